@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "base/file.h"
+
+#include "base/memory.h"
+#include "base/status.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+swarf_status swarf_file_read(const char *path, char **data, size_t *length)
+{
+    SWARF_REQUIRE(path && data && length, "file: path or output missing");
+    FILE *file = fopen(path, "rb");
+    if (!file) return swarf_fail(SWARF_ERROR_IO, "%s: cannot open: %s", path, strerror(errno));
+    struct stat info;
+    if (fstat(fileno(file), &info) == 0 && S_ISDIR(info.st_mode)) {
+        fclose(file);
+        return swarf_fail(SWARF_ERROR_IO, "%s: is a folder, not a file", path);
+    }
+    char *buffer = NULL;
+    size_t room = 0, used = 0;
+    swarf_status status = SWARF_OK;
+    for (;;) {
+        status = swarf_array_reserve((void **)&buffer, &room, used + 65537, 1);
+        if (status != SWARF_OK) break;
+        const size_t got = fread(buffer + used, 1, room - used - 1, file);
+        used += got;
+        if (got == 0) break;
+    }
+    if (status == SWARF_OK && ferror(file)) status = swarf_fail(SWARF_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    fclose(file);
+    if (status != SWARF_OK) {
+        free(buffer);
+        return status;
+    }
+    buffer[used] = 0;
+    *data = buffer;
+    *length = used;
+    return SWARF_OK;
+}
+
+swarf_status swarf_file_begin(const char *path, swarf_file_writer *writer)
+{
+    SWARF_REQUIRE(path && *path && writer, "file: path missing");
+    const size_t length = strlen(path);
+    char *copy = malloc(length + 1), *temporary = malloc(length + 8);
+    if (!copy || !temporary) {
+        free(copy);
+        free(temporary);
+        return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
+    }
+    memcpy(copy, path, length + 1);
+    memcpy(temporary, path, length);
+    memcpy(temporary + length, ".XXXXXX", 8);
+    const int descriptor = mkstemp(temporary);
+    FILE *stream = NULL;
+    if (descriptor >= 0) {
+        const mode_t mask = umask(0);
+        umask(mask);
+        (void)fchmod(descriptor, 0666 & ~mask); /* mkstemp makes it private */
+        stream = fdopen(descriptor, "wb");
+    }
+    if (!stream) {
+        const swarf_status status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", path, strerror(errno));
+        if (descriptor >= 0) {
+            close(descriptor);
+            unlink(temporary);
+        }
+        free(copy);
+        free(temporary);
+        return status;
+    }
+    writer->stream = stream;
+    writer->path = copy;
+    writer->temporary = temporary;
+    return SWARF_OK;
+}
+
+static void forget(swarf_file_writer *writer)
+{
+    free(writer->path);
+    free(writer->temporary);
+    memset(writer, 0, sizeof *writer);
+}
+
+swarf_status swarf_file_commit(swarf_file_writer *writer)
+{
+    swarf_status status = SWARF_OK;
+    const int bad = ferror(writer->stream);
+    if (fclose(writer->stream) != 0 || bad)
+        status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", writer->path, strerror(errno));
+    else if (rename(writer->temporary, writer->path) != 0)
+        status = swarf_fail(SWARF_ERROR_IO, "%s: cannot replace: %s", writer->path, strerror(errno));
+    if (status != SWARF_OK) unlink(writer->temporary);
+    forget(writer);
+    return status;
+}
+
+void swarf_file_abandon(swarf_file_writer *writer)
+{
+    if (!writer->stream) return;
+    fclose(writer->stream);
+    unlink(writer->temporary);
+    forget(writer);
+}
+
+void swarf_file_suffix(const char *path, char *out, size_t size)
+{
+    const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
+    size_t used = 0;
+    if (dot && (!slash || dot > slash))
+        for (dot++; *dot && used + 1 < size; dot++) out[used++] = (char)tolower((unsigned char)*dot);
+    out[used] = 0;
+}

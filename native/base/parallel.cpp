@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* TBB behind C. One arena per call, as wide as swarf_threads() says. */
+#include "base/parallel.h"
+
+#include "base/guard.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+
+namespace {
+
+std::atomic<int> wanted_threads{0};
+
+using clock_type = std::chrono::steady_clock;
+/* Often enough for a smooth bar, rare enough that a Python callback costs nothing. */
+constexpr auto report_interval = std::chrono::milliseconds(25);
+
+struct run {
+    swarf_work_fn work;
+    void *context;
+    const swarf_progress *progress;
+    double from, to;
+    size_t count;
+    std::thread::id caller;
+    std::atomic<size_t> done{0};
+    std::atomic<int> failed{SWARF_OK};
+    std::string text; /* written once, by the thread that sets `failed` */
+    clock_type::time_point reported;
+
+    void stop(swarf_status status)
+    {
+        int expected = SWARF_OK;
+        if (failed.compare_exchange_strong(expected, status)) text = swarf_error_last();
+    }
+    void one(size_t index)
+    {
+        if (failed.load(std::memory_order_relaxed) != SWARF_OK) return;
+        const swarf_status status = work(context, index);
+        if (status != SWARF_OK) stop(status);
+        const size_t finished = done.fetch_add(1, std::memory_order_relaxed) + 1;
+        if (!progress || std::this_thread::get_id() != caller) return;
+        const auto now = clock_type::now();
+        if (now - reported < report_interval) return;
+        reported = now;
+        const swarf_status answer =
+            swarf_progress_report(progress, from + (to - from) * static_cast<double>(finished) / static_cast<double>(count));
+        if (answer != SWARF_OK) stop(answer);
+    }
+};
+
+} // namespace
+
+extern "C" swarf_status swarf_threads_set(int count)
+{
+    SWARF_REQUIRE(count >= 0 && count <= 1024, "threads: %d is not in 0 .. 1024 (0: one per core)", count);
+    wanted_threads.store(count);
+    return SWARF_OK;
+}
+
+extern "C" int swarf_threads(void)
+{
+    const int wanted = wanted_threads.load();
+    if (wanted > 0) return wanted;
+    const unsigned cores = std::thread::hardware_concurrency();
+    return cores ? static_cast<int>(cores) : 1;
+}
+
+extern "C" swarf_status swarf_progress_report(const swarf_progress *progress, double fraction)
+{
+    if (progress && progress->fn && progress->fn(progress->user, fraction))
+        return swarf_fail(SWARF_ERROR_CANCELLED, "cancelled");
+    return SWARF_OK;
+}
+
+extern "C" swarf_status swarf_parallel_for(size_t count, swarf_work_fn work, void *context,
+                                           const swarf_progress *progress, double from, double to)
+{
+    if (count == 0) return SWARF_OK;
+    return swarf_guard("parallel work", [&]() -> swarf_status {
+        run state{work, context, progress && progress->fn ? progress : nullptr, from, to, count,
+                  std::this_thread::get_id(), {}, {}, {}, clock_type::now()};
+        const int threads = swarf_threads();
+        if (threads == 1 || count == 1) {
+            for (size_t index = 0; index < count && state.failed.load() == SWARF_OK; index++) state.one(index);
+        } else {
+            tbb::task_arena arena(threads);
+            arena.execute([&] {
+                tbb::parallel_for(
+                    tbb::blocked_range<size_t>(0, count, 1),
+                    [&](const tbb::blocked_range<size_t> &range) {
+                        for (size_t index = range.begin(); index != range.end(); index++) state.one(index);
+                    },
+                    tbb::simple_partitioner());
+            });
+        }
+        const int failed = state.failed.load();
+        if (failed != SWARF_OK) return swarf_fail(static_cast<swarf_status>(failed), "%s", state.text.c_str());
+        return SWARF_OK;
+    });
+}

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Everything of libswarf. */
+#ifndef SWARF_H
+#define SWARF_H
+
+#include "base.h"
+#include "compare.h"
+#include "cutter.h"
+#include "gcode.h"
+#include "mesh.h"
+#include "program.h"
+#include "render.h"
+#include "stock.h"
+#include "sweep.h"
+
+#endif

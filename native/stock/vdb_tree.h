@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* The OpenVDB tree behind a C face, laid out for cutting.
+ *
+ *   grid of nodes: 128^3 voxels each = 16^3 slots of 8^3 voxels; a slot is a leaf (512 floats), or a tile that
+ *   is outside (+background) or inside (-background).
+ *   node (nx, ny, nz) has the number (nx * count[1] + ny) * count[2] + nz; slot (sx, sy, sz) of it the number
+ *   sx * 256 + sy * 16 + sz; value (x, y, z) of a leaf the place x * 64 + y * 8 + z.
+ *   `occupied` has 64 words per node, one bit per slot: 0 where the slot is an outside tile.
+ *
+ * Index space starts at the low corner of the first node. Different slots of one node may be changed by different
+ * threads only when they lie in different columns of 4x4 slots (a mask word holds 4 rows of y at one x).
+ */
+#ifndef SWARF_STOCK_VDB_TREE_H
+#define SWARF_STOCK_VDB_TREE_H
+
+#include "swarf/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    SWARF_LEAF_DIM = 8,
+    SWARF_LEAF_SIZE = 512,
+    SWARF_NODE_DIM = 128,
+    SWARF_NODE_SLOTS = 4096,
+    SWARF_NODE_WORDS = 64
+};
+
+/** Half width of the narrow band in voxels. */
+#define SWARF_HALF_WIDTH 3.0f
+
+typedef struct swarf_tree swarf_tree;
+
+/** What the cutting loop works on; owned by the tree. */
+typedef struct swarf_tree_layout {
+    double voxel;
+    double origin[3];    /**< world position (mm) of the centre of voxel (0, 0, 0) of this layout */
+    int32_t count[3];    /**< nodes along x, y, z */
+    float background;    /**< SWARF_HALF_WIDTH * voxel */
+    uint64_t *occupied;
+} swarf_tree_layout;
+
+/** A tree of outside tiles only, all nodes made. */
+swarf_status swarf_tree_create(double voxel, const double origin[3], const int32_t count[3], swarf_tree **out);
+swarf_status swarf_tree_copy(const swarf_tree *tree, swarf_tree **out);
+void swarf_tree_destroy(swarf_tree *tree);
+const swarf_tree_layout *swarf_tree_get_layout(const swarf_tree *tree);
+
+/** Values of the leaf in a slot, NULL where it is a tile. */
+float *swarf_tree_leaf(const swarf_tree *tree, size_t node, unsigned slot);
+/** Make a slot a leaf with these 512 values and active mask (8 words), and occupied. May fail on memory. */
+swarf_status swarf_tree_leaf_add(swarf_tree *tree, size_t node, unsigned slot, const float *values,
+                                 const uint64_t mask[8]);
+/** Replace the active mask of an existing leaf. */
+void swarf_tree_leaf_mask(swarf_tree *tree, size_t node, unsigned slot, const uint64_t mask[8]);
+/** Make a slot an outside (+background, not occupied) or inside tile (occupied), dropping its leaf. */
+void swarf_tree_tile(swarf_tree *tree, size_t node, unsigned slot, int inside);
+
+/** Leaves in the tree, and bytes it holds. */
+void swarf_tree_size(const swarf_tree *tree, size_t *leaves, size_t *bytes);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
