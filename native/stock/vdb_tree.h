@@ -49,6 +49,8 @@ const swarf_tree_layout *swarf_tree_get_layout(const swarf_tree *tree);
 
 /** Values of the leaf in a slot, NULL where it is a tile. */
 float *swarf_tree_leaf(const swarf_tree *tree, size_t node, unsigned slot);
+/** Of a slot that is a tile: 1 inside, 0 outside. */
+int swarf_tree_tile_inside(const swarf_tree *tree, size_t node, unsigned slot);
 /** Make a slot a leaf with these 512 values and active mask (8 words), and occupied. May fail on memory. */
 swarf_status swarf_tree_leaf_add(swarf_tree *tree, size_t node, unsigned slot, const float *values,
                                  const uint64_t mask[8]);

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Small arithmetic on leaves and nodes, shared by the files of this room. */
+#ifndef SWARF_STOCK_LEAF_H
+#define SWARF_STOCK_LEAF_H
+
+#include "stock/vdb_tree.h"
+
+#include <math.h>
+
+/** A leaf with no value below this many voxels holds no part of a cell that the surface crosses: sqrt(3) is the
+ *  diagonal of a voxel, and a margin for rounding. Smaller would tear holes into the surface. */
+#define SWARF_LEAF_DROP 1.75f
+
+static inline size_t swarf_layout_nodes(const swarf_tree_layout *layout)
+{
+    return (size_t)layout->count[0] * (size_t)layout->count[1] * (size_t)layout->count[2];
+}
+
+/** Low corner of a slot in a node whose low corner is `origin`. */
+static inline void swarf_leaf_corner(const int32_t origin[3], unsigned slot, int32_t corner[3])
+{
+    corner[0] = origin[0] + (int32_t)(slot >> 8) * SWARF_LEAF_DIM;
+    corner[1] = origin[1] + (int32_t)(slot >> 4 & 15) * SWARF_LEAF_DIM;
+    corner[2] = origin[2] + (int32_t)(slot & 15) * SWARF_LEAF_DIM;
+}
+
+/** Low corner of a node, in voxels of the layout. */
+static inline void swarf_node_corner(const swarf_tree_layout *layout, size_t node, int32_t corner[3])
+{
+    const size_t rows = (size_t)layout->count[1] * (size_t)layout->count[2];
+    corner[0] = (int32_t)(node / rows) * SWARF_NODE_DIM;
+    corner[1] = (int32_t)(node % rows / (size_t)layout->count[2]) * SWARF_NODE_DIM;
+    corner[2] = (int32_t)(node % (size_t)layout->count[2]) * SWARF_NODE_DIM;
+}
+
+/** Active mask (values inside the band) and least value of a leaf. */
+static inline void swarf_leaf_mask(const float values[SWARF_LEAF_SIZE], float background, uint64_t mask[8], float *least)
+{
+    float low = values[0];
+    for (int x = 0; x < 8; x++) {
+        uint64_t word = 0;
+        for (int k = 0; k < 64; k++) {
+            const float value = values[x * 64 + k];
+            word |= (uint64_t)(fabsf(value) < background) << k;
+            low = value < low ? value : low;
+        }
+        mask[x] = word;
+    }
+    *least = low;
+}
+
+#endif

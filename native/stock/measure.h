@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Measures over the leaves of a stock, for callers that are already inside it. */
+#ifndef SWARF_STOCK_MEASURE_H
+#define SWARF_STOCK_MEASURE_H
+
+#include "stock/stock.h"
+
+/** Volume in mm3 of a stock that has been entered for reading: every voxel counts by clamp(1/2 - d / h, 0, 1), which
+ *  is exact for planes along the axes and of second order for curved faces. */
+swarf_status swarf_measure_volume(const swarf_stock *stock, double *out);
+
+#endif

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "stock/vdb_tree.hpp"
+
+#include "base/guard.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <mutex>
+
+using openvdb::Coord;
+using openvdb::Index;
+
+void swarf_vdb_initialize()
+{
+    static std::once_flag once;
+    std::call_once(once, [] { openvdb::initialize(); });
+}
+
+namespace {
+
+size_t node_number(const swarf_tree &tree, int32_t x, int32_t y, int32_t z)
+{
+    const int32_t *count = tree.layout.count;
+    return (static_cast<size_t>(x) * static_cast<size_t>(count[1]) + static_cast<size_t>(y)) *
+               static_cast<size_t>(count[2]) +
+           static_cast<size_t>(z);
+}
+
+Coord slot_corner(const swarf_vdb_node &node, unsigned slot)
+{
+    const Coord corner = node.origin();
+    return corner.offsetBy(static_cast<int>(slot >> 8) * SWARF_LEAF_DIM, static_cast<int>(slot >> 4 & 15) * SWARF_LEAF_DIM,
+                           static_cast<int>(slot & 15) * SWARF_LEAF_DIM);
+}
+
+/* The node that holds `at`, made (all of the value that was there) where the tree has a tile instead. */
+swarf_vdb_node *make_node(openvdb::FloatTree &tree, const Coord &at)
+{
+    if (auto *node = tree.probeNode<swarf_vdb_node>(at)) return node;
+    const float value = tree.getValue(at);
+    tree.touchLeaf(at);
+    auto *node = tree.probeNode<swarf_vdb_node>(at);
+    node->addTile(swarf_vdb_node::coordToOffset(at), value, false);
+    return node;
+}
+
+/* Find or make all nodes of the layout. */
+void fill_nodes(swarf_tree &tree)
+{
+    const int32_t *count = tree.layout.count;
+    const size_t total = static_cast<size_t>(count[0]) * static_cast<size_t>(count[1]) * static_cast<size_t>(count[2]);
+    tree.nodes.resize(total);
+    tree.occupied.assign(total * SWARF_NODE_WORDS, 0);
+    tree.layout.occupied = tree.occupied.data();
+    for (int32_t x = 0; x < count[0]; x++)
+        for (int32_t y = 0; y < count[1]; y++)
+            for (int32_t z = 0; z < count[2]; z++)
+                tree.nodes[node_number(tree, x, y, z)] =
+                    make_node(tree.grid->tree(), tree.base.offsetBy(x * SWARF_NODE_DIM, y * SWARF_NODE_DIM, z * SWARF_NODE_DIM));
+}
+
+swarf_vdb_leaf *leaf_of(const swarf_tree *tree, size_t node, unsigned slot)
+{
+    swarf_vdb_node *const holder = tree->nodes[node];
+    if (!holder->getChildMask().isOn(slot)) return nullptr;
+    return const_cast<swarf_vdb_leaf *>(holder->getTable()[slot].getChild());
+}
+
+void set_mask(swarf_vdb_leaf &leaf, const uint64_t mask[8])
+{
+    auto &words = leaf.getValueMask();
+    for (Index k = 0; k < 8; k++) words.getWord<uint64_t>(k) = mask[k];
+}
+
+} // namespace
+
+swarf_tree *swarf_tree_adopt(const openvdb::FloatGrid::Ptr &grid)
+{
+    auto tree = std::make_unique<swarf_tree>();
+    tree->grid = grid;
+    grid->tree().voxelizeActiveTiles();
+    openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+    if (box.empty()) box.reset(Coord(0), Coord(0));
+    /* Multiples of 128 below the low and above the high corner; >> rounds towards minus infinity. */
+    for (int k = 0; k < 3; k++) {
+        const int lo = box.min()[k] >> 7, hi = box.max()[k] >> 7;
+        tree->base[k] = lo * SWARF_NODE_DIM;
+        tree->layout.count[k] = hi - lo + 1;
+    }
+    tree->layout.voxel = grid->voxelSize()[0];
+    tree->layout.background = grid->background();
+    const openvdb::Vec3d origin = grid->indexToWorld(tree->base);
+    for (int k = 0; k < 3; k++) tree->layout.origin[k] = origin[k];
+    fill_nodes(*tree);
+    for (size_t node = 0; node < tree->nodes.size(); node++) {
+        const swarf_vdb_node &holder = *tree->nodes[node];
+        uint64_t *words = &tree->occupied[node * SWARF_NODE_WORDS];
+        for (unsigned slot = 0; slot < SWARF_NODE_SLOTS; slot++)
+            if (holder.getChildMask().isOn(slot) || holder.getTable()[slot].getValue() < 0)
+                words[slot >> 6] |= uint64_t(1) << (slot & 63);
+    }
+    return tree.release();
+}
+
+extern "C" swarf_status swarf_tree_create(double voxel, const double origin[3], const int32_t count[3],
+                                          swarf_tree **out)
+{
+    return swarf_guard("stock", [&]() -> swarf_status {
+        swarf_vdb_initialize();
+        auto tree = std::make_unique<swarf_tree>();
+        tree->layout.voxel = voxel;
+        tree->layout.background = static_cast<float>(SWARF_HALF_WIDTH * voxel);
+        auto transform = openvdb::math::Transform::createLinearTransform(voxel);
+        transform->postTranslate(openvdb::Vec3d(origin[0], origin[1], origin[2]));
+        tree->grid = openvdb::FloatGrid::create(tree->layout.background);
+        tree->grid->setGridClass(openvdb::GRID_LEVEL_SET);
+        tree->grid->setTransform(transform);
+        tree->base = Coord(0);
+        for (int k = 0; k < 3; k++) {
+            tree->layout.origin[k] = origin[k];
+            tree->layout.count[k] = count[k];
+        }
+        fill_nodes(*tree);
+        *out = tree.release();
+        return SWARF_OK;
+    });
+}
+
+extern "C" swarf_status swarf_tree_copy(const swarf_tree *tree, swarf_tree **out)
+{
+    return swarf_guard("stock", [&]() -> swarf_status {
+        auto copy = std::make_unique<swarf_tree>(*tree);
+        copy->grid = tree->grid->deepCopy();
+        copy->layout.occupied = copy->occupied.data();
+        for (size_t node = 0; node < copy->nodes.size(); node++)
+            copy->nodes[node] = copy->grid->tree().probeNode<swarf_vdb_node>(tree->nodes[node]->origin());
+        *out = copy.release();
+        return SWARF_OK;
+    });
+}
+
+extern "C" void swarf_tree_destroy(swarf_tree *tree)
+{
+    delete tree;
+}
+
+extern "C" const swarf_tree_layout *swarf_tree_get_layout(const swarf_tree *tree)
+{
+    return &tree->layout;
+}
+
+extern "C" float *swarf_tree_leaf(const swarf_tree *tree, size_t node, unsigned slot)
+{
+    swarf_vdb_leaf *const leaf = leaf_of(tree, node, slot);
+    return leaf ? leaf->buffer().data() : nullptr;
+}
+
+extern "C" int swarf_tree_tile_inside(const swarf_tree *tree, size_t node, unsigned slot)
+{
+    return tree->nodes[node]->getTable()[slot].getValue() < 0;
+}
+
+extern "C" swarf_status swarf_tree_leaf_add(swarf_tree *tree, size_t node, unsigned slot, const float *values,
+                                            const uint64_t mask[8])
+{
+    return swarf_guard("stock", [&]() -> swarf_status {
+        swarf_vdb_node &holder = *tree->nodes[node];
+        /* PartialCreate: no buffer is filled only to be overwritten. */
+        auto leaf = std::make_unique<swarf_vdb_leaf>(openvdb::PartialCreate(), slot_corner(holder, slot), 0.0f, false);
+        leaf->buffer().allocate();
+        std::memcpy(leaf->buffer().data(), values, SWARF_LEAF_SIZE * sizeof(float));
+        set_mask(*leaf, mask);
+        holder.addLeaf(leaf.release());
+        tree->layout.occupied[node * SWARF_NODE_WORDS + (slot >> 6)] |= uint64_t(1) << (slot & 63);
+        return SWARF_OK;
+    });
+}
+
+extern "C" void swarf_tree_leaf_mask(swarf_tree *tree, size_t node, unsigned slot, const uint64_t mask[8])
+{
+    set_mask(*leaf_of(tree, node, slot), mask);
+}
+
+extern "C" void swarf_tree_tile(swarf_tree *tree, size_t node, unsigned slot, int inside)
+{
+    const float value = inside ? -tree->layout.background : tree->layout.background;
+    tree->nodes[node]->addTile(Index(slot), value, false);
+    uint64_t &word = tree->layout.occupied[node * SWARF_NODE_WORDS + (slot >> 6)];
+    const uint64_t bit = uint64_t(1) << (slot & 63);
+    word = inside ? word | bit : word & ~bit;
+}
+
+extern "C" void swarf_tree_size(const swarf_tree *tree, size_t *leaves, size_t *bytes)
+{
+    size_t count = 0;
+    for (const swarf_vdb_node *node : tree->nodes) count += node->getChildMask().countOn();
+    *leaves = count;
+    *bytes = tree->nodes.size() * sizeof(swarf_vdb_node) +
+             count * (sizeof(swarf_vdb_leaf) + SWARF_LEAF_SIZE * sizeof(float)) +
+             tree->occupied.size() * sizeof(uint64_t);
+}
