@@ -5,17 +5,24 @@
 #include "base/guard.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <string>
 #include <thread>
 
 namespace {
 
 std::atomic<int> wanted_threads{0};
+
+/* TBB has a worker per core unless told otherwise; more are wanted when a count above that is asked for.
+ * Never destroyed at exit: TBB may be gone by then. */
+std::mutex pool_mutex;
+tbb::global_control *pool_size = nullptr;
 
 using clock_type = std::chrono::steady_clock;
 /* Often enough for a smooth bar, rare enough that a Python callback costs nothing. */
@@ -59,8 +66,15 @@ struct run {
 extern "C" swarf_status swarf_threads_set(int count)
 {
     SWARF_REQUIRE(count >= 0 && count <= 1024, "threads: %d is not in 0 .. 1024 (0: one per core)", count);
-    wanted_threads.store(count);
-    return SWARF_OK;
+    return swarf_guard("threads", [&]() -> swarf_status {
+        const std::lock_guard<std::mutex> lock(pool_mutex);
+        delete pool_size;
+        pool_size = nullptr;
+        if (count > static_cast<int>(std::thread::hardware_concurrency()))
+            pool_size = new tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(count));
+        wanted_threads.store(count);
+        return SWARF_OK;
+    });
 }
 
 extern "C" int swarf_threads(void)

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* swarf_parallel_for: every index once, the first failure wins with its text, cancelling, progress. */
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "base/status.h"
+#include "test.h"
+
+enum { COUNT = 20000 };
+
+/* One slot per index. Plain, not atomic: the thread sanitizer sees it when an index is given out twice. */
+static int visits[COUNT];
+static double products[COUNT];
+
+static swarf_status visit(void *context, size_t index)
+{
+    visits[index]++;
+    products[index] = 0;
+    for (int k = 0; k < 50; k++) products[index] += (double)(index + (size_t)k) * *(const double *)context;
+    return SWARF_OK;
+}
+
+static void check_every_index_once(int threads)
+{
+    const double factor = 0.5;
+    CHECK_OK(swarf_threads_set(threads));
+    memset(visits, 0, sizeof visits);
+    CHECK_OK(swarf_parallel_for(COUNT, visit, (void *)&factor, NULL, 0, 1));
+    size_t wrong = 0;
+    for (size_t i = 0; i < COUNT; i++) wrong += visits[i] != 1 || products[i] != 0.5 * (50.0 * (double)i + 1225.0);
+    CHECK(wrong == 0);
+    CHECK_OK(swarf_parallel_for(0, visit, (void *)&factor, NULL, 0, 1));
+}
+
+typedef struct failing {
+    size_t bad_from; /* this index and all after it fail */
+    atomic_size_t calls;
+} failing;
+
+static swarf_status fail_late(void *context, size_t index)
+{
+    failing *f = context;
+    atomic_fetch_add(&f->calls, 1);
+    if (index >= f->bad_from) return swarf_fail(SWARF_ERROR_GEOMETRY, "piece %zu is bad", index);
+    return SWARF_OK;
+}
+
+/* On any thread the failure's text must reach the caller, and the rest must not be worked off. */
+static void check_failure(int threads)
+{
+    CHECK_OK(swarf_threads_set(threads));
+    failing one = {COUNT - 1, 0};
+    CHECK_FAILS(swarf_parallel_for(COUNT, fail_late, &one, NULL, 0, 1), SWARF_ERROR_GEOMETRY, "piece 19999 is bad");
+    failing many = {0, 0};
+    CHECK_FAILS(swarf_parallel_for(COUNT, fail_late, &many, NULL, 0, 1), SWARF_ERROR_GEOMETRY, "is bad");
+    CHECK(atomic_load(&many.calls) <= (size_t)threads);
+}
+
+typedef struct watch {
+    pthread_t caller;
+    double last, lowest, highest, stop_at;
+    size_t calls, strangers, falls;
+} watch;
+
+static int on_progress(void *user, double fraction)
+{
+    watch *w = user;
+    w->strangers += !pthread_equal(pthread_self(), w->caller);
+    w->falls += fraction < w->last;
+    w->last = fraction;
+    if (fraction < w->lowest) w->lowest = fraction;
+    if (fraction > w->highest) w->highest = fraction;
+    w->calls++;
+    return fraction >= w->stop_at;
+}
+
+/* About 50 us of work, so that a loop lasts long enough for several reports. */
+static swarf_status dawdle(void *context, size_t index)
+{
+    volatile double sum = 0;
+    for (int k = 0; k < 25000; k++) sum = sum + (double)k;
+    atomic_fetch_add((atomic_size_t *)context, 1);
+    (void)index;
+    return SWARF_OK;
+}
+
+static void check_progress(int threads)
+{
+    CHECK_OK(swarf_threads_set(threads));
+    atomic_size_t done = 0;
+    watch w = {.caller = pthread_self(), .lowest = 2, .highest = -1, .stop_at = 2};
+    const swarf_progress progress = {on_progress, &w};
+    CHECK_OK(swarf_parallel_for(2000, dawdle, &done, &progress, 0.25, 0.75));
+    CHECK(atomic_load(&done) == 2000);
+    CHECK(w.calls > 0);
+    CHECK(w.strangers == 0);
+    CHECK(w.falls == 0);
+    CHECK(w.lowest >= 0.25 && w.highest <= 0.75);
+
+    atomic_store(&done, 0);
+    w = (watch){.caller = pthread_self(), .lowest = 2, .highest = -1, .stop_at = 0};
+    CHECK_FAILS(swarf_parallel_for(2000, dawdle, &done, &progress, 0, 1), SWARF_ERROR_CANCELLED, "cancelled");
+    CHECK(w.calls == 1);
+    CHECK(atomic_load(&done) < 2000);
+}
+
+/* A loop inside a loop, and two threads that loop at the same time, share the pool. */
+static swarf_status nest(void *context, size_t index)
+{
+    (void)index;
+    return swarf_parallel_for(50, dawdle, context, NULL, 0, 1);
+}
+
+static void *loop_beside(void *context)
+{
+    return swarf_parallel_for(8, nest, context, NULL, 0, 1) == SWARF_OK ? context : NULL;
+}
+
+static void check_sharing(void)
+{
+    CHECK_OK(swarf_threads_set(3));
+    atomic_size_t here = 0, beside = 0;
+    pthread_t other;
+    void *result = NULL;
+    if (!CHECK(pthread_create(&other, NULL, loop_beside, &beside) == 0)) return;
+    CHECK_OK(swarf_parallel_for(8, nest, &here, NULL, 0, 1));
+    pthread_join(other, &result);
+    CHECK(result == &beside);
+    CHECK(atomic_load(&here) == 400 && atomic_load(&beside) == 400);
+}
+
+int main(void)
+{
+    static const int threads[] = {1, 2, 3, 8};
+    for (size_t i = 0; i < sizeof threads / sizeof threads[0]; i++) {
+        check_every_index_once(threads[i]);
+        check_failure(threads[i]);
+        check_progress(threads[i]);
+    }
+    check_sharing();
+    return test_end();
+}
