@@ -79,13 +79,17 @@ SWARF_API swarf_status swarf_program_add_operation(swarf_program *program, const
 /** Make what follows belong to a section equal to `section` (found or added). SWARF_ERROR_ARGUMENT for
  *  an operation that was not added, a speed that is not finite. */
 SWARF_API swarf_status swarf_program_set_section(swarf_program *program, const swarf_section *section);
-/** Add a straight move. Coordinates that are NAN in the current position make it a POSITION move.
- *  SWARF_ERROR_ARGUMENT names the line when a number is not finite. */
+/** Add a straight move (RAPID, FEED, PROBE, POSITION); the feed of a rapid is kept as 0. Coordinates that are NAN in
+ *  the current position make it a POSITION move; such an axis may stay NAN in `end`. Without any operation the first
+ *  move adds one called "program". SWARF_ERROR_ARGUMENT names the line when a number is not finite or a coordinate
+ *  beyond 1e6 mm. */
 SWARF_API swarf_status swarf_program_add_line(swarf_program *program, swarf_move_kind kind, const double end[3],
                                               double feed_mm_min, uint32_t line);
 /** Add an arc or helix about `centre`; ccw turns counter-clockwise about the plane's normal; `turns` >= 1 counts
  *  the passes (1: up to a full circle; end == start gives a full one). The end's and start's radii may
- *  differ by at most max(0.002 mm, 0.1 %) and the arc ends exactly at `end`; else SWARF_ERROR_ARGUMENT. */
+ *  differ by at most max(0.002 mm, 0.1 %) and the arc ends exactly at `end`; else SWARF_ERROR_ARGUMENT.
+ *  A mismatch is taken up by moving the centre along the chord until the radii agree; only in nearly full circles, where
+ *  that would move it too far, the centre stays and the radius changes evenly with the angle. */
 SWARF_API swarf_status swarf_program_add_arc(swarf_program *program, const double end[3], const double centre[3],
                                              swarf_plane plane, int ccw, int turns, double feed_mm_min, uint32_t line);
 /** Add a dwell or a tool change at the current position. */
@@ -102,7 +106,8 @@ SWARF_API size_t swarf_program_operation_count(const swarf_program *program);
 SWARF_API const char *swarf_program_operation_name(const swarf_program *program, size_t index);
 /** Where move `index` starts. */
 SWARF_API void swarf_program_move_start(const swarf_program *program, size_t index, double out[3]);
-/** Seconds that the feed and dwell moves take at their feeds (no acceleration), rapids at rapid_mm_min. */
+/** Seconds that the feed and dwell moves take at their feeds (no acceleration), rapids at rapid_mm_min. Moves of
+ *  feed 0 (none given) and rapids at rapid_mm_min <= 0 count nothing. */
 SWARF_API double swarf_program_seconds(const swarf_program *program, double rapid_mm_min);
 
 /** The geometry of one move as the sweeps see it; has_motion 0: nothing moves (event, zero length, unknown
