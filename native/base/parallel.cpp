@@ -15,6 +15,17 @@
 #include <string>
 #include <thread>
 
+/* TBB is not instrumented, so the thread sanitizer has to be told that a loop comes after what stood before it
+ * and before what stands behind it. Nothing orders the pieces of a loop: races between them are found. */
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#define HAPPENS_BEFORE(token) __tsan_release(token)
+#define HAPPENS_AFTER(token) __tsan_acquire(token)
+#else
+#define HAPPENS_BEFORE(token) ((void)0)
+#define HAPPENS_AFTER(token) ((void)0)
+#endif
+
 namespace {
 
 std::atomic<int> wanted_threads{0};
@@ -34,11 +45,12 @@ struct run {
     const swarf_progress *progress;
     double from, to;
     size_t count;
-    std::thread::id caller;
+    std::thread::id caller = std::this_thread::get_id();
     std::atomic<size_t> done{0};
     std::atomic<int> failed{SWARF_OK};
-    std::string text; /* written once, by the thread that sets `failed` */
-    clock_type::time_point reported;
+    std::string text{}; /* written once, by the thread that sets `failed` */
+    clock_type::time_point reported = clock_type::now();
+    char began = 0, ended = 0; /* only their addresses are used, as tokens of the thread sanitizer */
 
     void stop(swarf_status status)
     {
@@ -55,8 +67,8 @@ struct run {
         const auto now = clock_type::now();
         if (now - reported < report_interval) return;
         reported = now;
-        const swarf_status answer =
-            swarf_progress_report(progress, from + (to - from) * static_cast<double>(finished) / static_cast<double>(count));
+        const swarf_status answer = swarf_progress_report(progress, from + (to - from) * static_cast<double>(finished) /
+                                                                               static_cast<double>(count));
         if (answer != SWARF_OK) stop(answer);
     }
 };
@@ -71,7 +83,8 @@ extern "C" swarf_status swarf_threads_set(int count)
         delete pool_size;
         pool_size = nullptr;
         if (count > static_cast<int>(std::thread::hardware_concurrency()))
-            pool_size = new tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(count));
+            pool_size =
+                new tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(count));
         wanted_threads.store(count);
         return SWARF_OK;
     });
@@ -97,21 +110,24 @@ extern "C" swarf_status swarf_parallel_for(size_t count, swarf_work_fn work, voi
 {
     if (count == 0) return SWARF_OK;
     return swarf_guard("parallel work", [&]() -> swarf_status {
-        run state{work, context, progress && progress->fn ? progress : nullptr, from, to, count,
-                  std::this_thread::get_id(), {}, {}, {}, clock_type::now()};
+        run state{work, context, progress && progress->fn ? progress : nullptr, from, to, count};
         const int threads = swarf_threads();
         if (threads == 1 || count == 1) {
             for (size_t index = 0; index < count && state.failed.load() == SWARF_OK; index++) state.one(index);
         } else {
+            HAPPENS_BEFORE(&state.began);
             tbb::task_arena arena(threads);
             arena.execute([&] {
                 tbb::parallel_for(
                     tbb::blocked_range<size_t>(0, count, 1),
                     [&](const tbb::blocked_range<size_t> &range) {
+                        HAPPENS_AFTER(&state.began);
                         for (size_t index = range.begin(); index != range.end(); index++) state.one(index);
+                        HAPPENS_BEFORE(&state.ended);
                     },
                     tbb::simple_partitioner());
             });
+            HAPPENS_AFTER(&state.ended);
         }
         const int failed = state.failed.load();
         if (failed != SWARF_OK) return swarf_fail(static_cast<swarf_status>(failed), "%s", state.text.c_str());
