@@ -9,7 +9,8 @@
 enum { TEXT_SIZE = 1024 };
 static _Thread_local char text[TEXT_SIZE];
 
-swarf_status swarf_fail(swarf_status status, const char *format, ...)
+/* Names in brackets: the header's macros of these names are not meant here. */
+swarf_status(swarf_fail)(swarf_status status, const char *format, ...)
 {
     char fresh[TEXT_SIZE]; /* the arguments may point into the old text */
     va_list arguments;
@@ -20,7 +21,7 @@ swarf_status swarf_fail(swarf_status status, const char *format, ...)
     return status;
 }
 
-swarf_status swarf_fail_within(swarf_status status, const char *format, ...)
+swarf_status(swarf_fail_within)(swarf_status status, const char *format, ...)
 {
     char prefix[TEXT_SIZE];
     va_list arguments;

@@ -15,17 +15,23 @@ swarf_status swarf_fail(swarf_status status, const char *format, ...) SWARF_PRIN
 /** The same with "prefix: " before the text of the failure that is already kept. */
 swarf_status swarf_fail_within(swarf_status status, const char *format, ...) SWARF_PRINTF(2, 3);
 
+/* Static analysis sees one file at a time and would follow the path on which a failure is no failure. */
+#ifdef __clang_analyzer__
+#define swarf_fail(status, ...) (swarf_fail((status), __VA_ARGS__), (status))
+#define swarf_fail_within(status, ...) (swarf_fail_within((status), __VA_ARGS__), (status))
+#endif
+
 /** Leave the calling function with the status of `call` when it failed. */
-#define SWARF_TRY(call)                                                                                               \
-    do {                                                                                                              \
-        swarf_status try_status_ = (call);                                                                            \
-        if (try_status_ != SWARF_OK) return try_status_;                                                              \
+#define SWARF_TRY(call)                                                                                                \
+    do {                                                                                                               \
+        swarf_status try_status_ = (call);                                                                             \
+        if (try_status_ != SWARF_OK) return try_status_;                                                               \
     } while (0)
 
 /** Leave the calling function when an argument is wrong. */
-#define SWARF_REQUIRE(condition, ...)                                                                                 \
-    do {                                                                                                              \
-        if (!(condition)) return swarf_fail(SWARF_ERROR_ARGUMENT, __VA_ARGS__);                                       \
+#define SWARF_REQUIRE(condition, ...)                                                                                  \
+    do {                                                                                                               \
+        if (!(condition)) return swarf_fail(SWARF_ERROR_ARGUMENT, __VA_ARGS__);                                        \
     } while (0)
 
 #ifdef __cplusplus
