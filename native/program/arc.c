@@ -87,9 +87,8 @@ swarf_status swarf_arc_make(const double start[3], const double end[3], const do
 
 void swarf_path_point(const swarf_path *path, double t, double out[3])
 {
-    const double *end = t <= 0.0 ? path->start : t >= 1.0 ? path->end : NULL;
-    if (end) { /* exactly, whatever the rounding of the formulas below */
-        for (int k = 0; k < 3; k++) out[k] = end[k];
+    if (t <= 0.0 || t >= 1.0) { /* exactly, whatever the rounding of the formulas below */
+        for (int k = 0; k < 3; k++) out[k] = t <= 0.0 ? path->start[k] : path->end[k];
         return;
     }
     for (int k = 0; k < 3; k++) out[k] = path->start[k] + t * (path->end[k] - path->start[k]);
