@@ -60,7 +60,7 @@ static swarf_status parse_form(const char *text, const char *words, swarf_cutter
                 break;
             }
         }
-        if (given < 2 || (*end && *end != ':')) {
+        if (given < 2 || (*end && *end != ':') || !isfinite(value[0]) || !isfinite(value[1]) || !isfinite(value[2])) {
             status = swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': node %zu is not of the form r/z or r/z/bulge", text, count);
             break;
         }
@@ -92,11 +92,11 @@ swarf_status swarf_cutter_parse(const char *text, swarf_cutter **out)
     }
     if (shape == SWARF_SHAPE_FORM) return parse_form(text, colon + 1, out);
     swarf_dimensions dimensions = swarf_dimensions_default();
-    for (const char *word = colon + 1; *word;) {
-        const size_t end = strcspn(word, ",");
-        SWARF_TRY(parse_dimension(text, swarf_shape_table[shape].name, word, end, &dimensions));
-        word += end;
-        if (*word == ',') word++;
+    for (const char *word = colon; *word;) {
+        word++; /* over the ':' or ',' */
+        const size_t length_word = strcspn(word, ",");
+        SWARF_TRY(parse_dimension(text, swarf_shape_table[shape].name, word, length_word, &dimensions));
+        word += length_word;
     }
     const swarf_status status = swarf_cutter_create_shape((swarf_shape)shape, &dimensions, out);
     return status == SWARF_ERROR_ARGUMENT ? swarf_fail(SWARF_ERROR_FORMAT, "%s", swarf_error_last()) : status;
