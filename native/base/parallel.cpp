@@ -11,6 +11,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <memory>
+#include <mutex>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -29,6 +31,25 @@
 namespace {
 
 std::atomic<int> wanted_threads{0};
+thread_local int current_slot = 0;
+
+/* Making an arena costs more than cutting one move, so the last one is kept for the next call of the same width;
+ * calls that overlap get one of their own. */
+std::unique_ptr<tbb::task_arena> kept_arena;
+std::mutex kept_mutex;
+
+std::unique_ptr<tbb::task_arena> take_arena(int threads)
+{
+    std::lock_guard<std::mutex> lock(kept_mutex);
+    if (kept_arena && kept_arena->max_concurrency() == threads) return std::move(kept_arena);
+    return std::make_unique<tbb::task_arena>(threads);
+}
+
+void keep_arena(std::unique_ptr<tbb::task_arena> arena)
+{
+    std::lock_guard<std::mutex> lock(kept_mutex);
+    kept_arena = std::move(arena);
+}
 
 /* TBB has a worker per core unless told otherwise; more are wanted when a count above that is asked for.
  * Never destroyed at exit: TBB may be gone by then. */
@@ -98,6 +119,11 @@ extern "C" int swarf_threads(void)
     return cores ? static_cast<int>(cores) : 1;
 }
 
+extern "C" int swarf_parallel_slot(void)
+{
+    return current_slot;
+}
+
 extern "C" swarf_status swarf_progress_report(const swarf_progress *progress, double fraction)
 {
     if (progress && progress->fn && progress->fn(progress->user, fraction))
@@ -116,17 +142,20 @@ extern "C" swarf_status swarf_parallel_for(size_t count, swarf_work_fn work, voi
             for (size_t index = 0; index < count && state.failed.load() == SWARF_OK; index++) state.one(index);
         } else {
             HAPPENS_BEFORE(&state.began);
-            tbb::task_arena arena(threads);
-            arena.execute([&] {
+            std::unique_ptr<tbb::task_arena> arena = take_arena(threads);
+            arena->execute([&] {
                 tbb::parallel_for(
                     tbb::blocked_range<size_t>(0, count, 1),
                     [&](const tbb::blocked_range<size_t> &range) {
+                        current_slot = tbb::this_task_arena::current_thread_index();
                         HAPPENS_AFTER(&state.began);
                         for (size_t index = range.begin(); index != range.end(); index++) state.one(index);
                         HAPPENS_BEFORE(&state.ended);
                     },
                     tbb::simple_partitioner());
             });
+            current_slot = 0;
+            keep_arena(std::move(arena));
             HAPPENS_AFTER(&state.ended);
         }
         const int failed = state.failed.load();

@@ -18,6 +18,9 @@ typedef swarf_status (*swarf_work_fn)(void *context, size_t index);
 swarf_status swarf_parallel_for(size_t count, swarf_work_fn work, void *context, const swarf_progress *progress,
                                 double from, double to);
 
+/** Number of the thread a piece of work runs on, 0 .. swarf_threads() - 1: for scratch memory of its own. */
+int swarf_parallel_slot(void);
+
 /** Report progress from the calling thread; SWARF_ERROR_CANCELLED when the caller wants to stop. */
 swarf_status swarf_progress_report(const swarf_progress *progress, double fraction);
 
