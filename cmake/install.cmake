@@ -13,8 +13,13 @@ install(FILES ${PROJECT_BINARY_DIR}/swarfConfig.cmake ${PROJECT_BINARY_DIR}/swar
 
 # The .pc file finds its prefix from its own place, so that the installed tree can be moved.
 file(RELATIVE_PATH SWARF_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" SWARF_PC_PREFIX ${SWARF_PC_PREFIX})
 configure_file(cmake/swarf.pc.in swarf.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/swarf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# FreeCAD's own folder for add-ons of the whole system, below the prefix /usr.
+set(SWARF_INSTALL_ADDONDIR share/freecad/Mod/Swarf CACHE STRING "Folder for the FreeCAD add-on, below the prefix")
+install(DIRECTORY freecad_mod/ DESTINATION ${SWARF_INSTALL_ADDONDIR} PATTERN __pycache__ EXCLUDE)
 
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
