@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Pictures: what is shown, in which colours, and PNG files read back by libpng. */
+#include <math.h>
+#include <png.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "test.h"
+
+static swarf_stock *block(double voxel_mm)
+{
+    const swarf_box box = {{0, 0, 0}, {40, 30, 20}};
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = voxel_mm;
+    swarf_stock *stock = NULL;
+    CHECK_OK(swarf_stock_create_box(&box, &options, &stock));
+    return stock;
+}
+
+/** Seen from the top on nothing: the opaque area is that of the face, its colour Gooch's formula, corners are clear. */
+static void check_face(swarf_scene *scene, const swarf_box *box)
+{
+    swarf_picture_options options = swarf_picture_options_default();
+    options.width = 203;
+    options.height = 151;
+    options.samples = 4;
+    memset(options.background, 0, sizeof options.background);
+    memset(options.background_top, 0, sizeof options.background_top);
+    const double aspect = 203.0 / 151;
+    const size_t bytes = 4 * 203 * 151;
+    uint8_t *rgba = malloc(bytes), *again = malloc(bytes);
+    swarf_camera camera;
+    if (!CHECK(rgba && again) || !CHECK_OK(swarf_camera_fit(SWARF_VIEW_TOP, 0, box, aspect, &camera))) return;
+    if (!CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, rgba))) return;
+    double covered = 0;
+    for (size_t i = 3; i < bytes; i += 4) covered += rgba[i] / 255.0;
+    const double pixel = camera.height_mm / 151;
+    CHECK_NEAR(covered * pixel * pixel / (40 * 30), 1, 2e-3);
+    CHECK(rgba[3] == 0 && rgba[bytes - 1] == 0);
+
+    /* The face looks at the camera: its light is the backward part of the unit vector to (-0.5, 0.7, 0.6). */
+    const double warmth = 0.5 + 0.5 * 0.6 / sqrt(0.25 + 0.49 + 0.36);
+    const uint8_t *middle = rgba + 4 * (75 * 203 + 101);
+    for (int channel = 0; channel < 3; channel++) {
+        const double base = options.colour[channel];
+        const double warm = 0.6 * base + (channel < 2 ? 0.4 : 0), cool = 0.2 * base + (channel < 2 ? 0 : 0.4);
+        const double linear = warmth * warm + (1 - warmth) * cool;
+        CHECK_NEAR(middle[channel], 255 * (1.055 * pow(linear, 1 / 2.4) - 0.055), 1.0);
+    }
+    CHECK(middle[3] == 255);
+
+    for (int threads = 1; threads <= 8; threads += threads == 3 ? 5 : 1) {
+        CHECK_OK(swarf_threads_set(threads));
+        memset(again, 1, bytes);
+        CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, again));
+        CHECK(memcmp(rgba, again, bytes) == 0);
+    }
+    CHECK_OK(swarf_threads_set(0));
+    free(rgba);
+    free(again);
+}
+
+/** Perspective and a gradient: opaque everywhere, darker from bottom to top along the rim, which shows no stock. */
+static void check_background(swarf_scene *scene, const swarf_box *box)
+{
+    swarf_picture_options options = swarf_picture_options_default();
+    options.width = 64;
+    options.height = 48;
+    options.samples = 1;
+    uint8_t rgba[4 * 64 * 48];
+    swarf_camera camera;
+    CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 1, box, 64.0 / 48, &camera));
+    if (!CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, rgba))) return;
+    for (int i = 0; i < 64 * 48; i++) CHECK(rgba[4 * i + 3] == 255);
+    for (int row = 1; row < 48; row++) CHECK(rgba[4 * 64 * row] >= rgba[4 * 64 * (row - 1)]);
+    CHECK(rgba[4 * 64 * 47] > rgba[0] + 30);
+    /* A camera within the material sees no surface: background only, equal along each row. */
+    camera.eye[0] = 20, camera.eye[1] = 15, camera.eye[2] = 10;
+    camera.target[0] = 0, camera.target[1] = 0, camera.target[2] = 10;
+    CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, rgba));
+    for (int row = 0; row < 48; row++)
+        for (int column = 1; column < 64; column++)
+            CHECK(memcmp(rgba + 4 * (64 * row + column), rgba + 4 * 64 * row, 4) == 0);
+}
+
+static void check_refusals(swarf_scene *scene, const swarf_box *box)
+{
+    const swarf_picture_options good = swarf_picture_options_default();
+    swarf_camera camera;
+    CHECK_OK(swarf_camera_fit(SWARF_VIEW_FRONT, 0, box, 1, &camera));
+    uint8_t rgba[4] = {1, 2, 3, 4};
+    swarf_picture_options options = good;
+    options.width = options.height = 0;
+    CHECK_FAILS(swarf_scene_picture(scene, &camera, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "0 x 0");
+    options = good;
+    options.width = 16385;
+    CHECK_FAILS(swarf_scene_picture(scene, &camera, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "16385");
+    options = good;
+    options.samples = 5;
+    CHECK_FAILS(swarf_scene_picture(scene, &camera, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "5 samples");
+    options = good;
+    options.colour[1] = NAN;
+    CHECK_FAILS(swarf_scene_picture(scene, &camera, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "colour");
+    options = good;
+    options.size = 3;
+    CHECK_FAILS(swarf_scene_picture(scene, &camera, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "options");
+    options = good;
+    options.width = options.height = 1;
+    swarf_camera bad = camera;
+    bad.eye[2] = NAN;
+    CHECK_FAILS(swarf_scene_picture(scene, &bad, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "z of eye");
+    bad = camera;
+    memcpy(bad.target, bad.eye, sizeof bad.eye);
+    CHECK_FAILS(swarf_scene_picture(scene, &bad, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "same point");
+    bad = camera;
+    for (int i = 0; i < 3; i++) bad.up[i] = bad.target[i] - bad.eye[i];
+    CHECK_FAILS(swarf_scene_picture(scene, &bad, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "up is along");
+    bad = camera;
+    bad.height_mm = 0;
+    CHECK_FAILS(swarf_scene_picture(scene, &bad, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "height");
+    bad.perspective = 1;
+    bad.fov_deg = 180;
+    CHECK_FAILS(swarf_scene_picture(scene, &bad, &options, NULL, rgba), SWARF_ERROR_ARGUMENT, "angle");
+    CHECK(rgba[0] == 1 && rgba[3] == 4);
+    CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, rgba));
+}
+
+static int stop_after(void *user, double fraction)
+{
+    int *left = user;
+    CHECK(fraction >= 0 && fraction <= 1);
+    return (*left)-- <= 0;
+}
+
+/** Cancelled at the k-th report: the pixels stay as they were, and the scene goes on working. */
+static void check_cancel(swarf_scene *scene, const swarf_box *box, test_random *random)
+{
+    swarf_picture_options options = swarf_picture_options_default();
+    options.width = 1600;
+    options.height = 1200;
+    const size_t bytes = 4 * 1600 * 1200;
+    uint8_t *rgba = malloc(bytes);
+    swarf_camera camera;
+    if (!CHECK(rgba) || !CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 1, box, 4.0 / 3, &camera))) return;
+    int cancelled = 0;
+    for (int trial = 0; trial < 6; trial++) {
+        int left = trial ? (int)test_random_below(random, 20) : 0;
+        const swarf_progress progress = {stop_after, &left};
+        memset(rgba, 0xab, bytes);
+        const swarf_status status = swarf_scene_picture(scene, &camera, &options, &progress, rgba);
+        CHECK(status == SWARF_OK || status == SWARF_ERROR_CANCELLED);
+        if (status != SWARF_ERROR_CANCELLED) continue;
+        cancelled++;
+        for (size_t i = 0; i < bytes; i++)
+            if (rgba[i] != 0xab) {
+                CHECK(rgba[i] == 0xab);
+                break;
+            }
+    }
+    CHECK(cancelled > 0);
+    free(rgba);
+}
+
+static void check_png(test_random *random)
+{
+    enum { WIDTH = 37, HEIGHT = 23 };
+    uint8_t rgba[4 * WIDTH * HEIGHT], back[4 * WIDTH * HEIGHT];
+    for (size_t i = 0; i < sizeof rgba; i++) rgba[i] = (uint8_t)test_random_below(random, 256);
+    char path[64];
+    snprintf(path, sizeof path, "/tmp/swarf-picture-%ld.png", (long)getpid());
+    if (CHECK_OK(swarf_picture_write(path, rgba, WIDTH, HEIGHT))) {
+        png_image image = {.version = PNG_IMAGE_VERSION};
+        if (CHECK(png_image_begin_read_from_file(&image, path))) {
+            CHECK(image.width == WIDTH && image.height == HEIGHT);
+            CHECK(image.format == PNG_FORMAT_RGBA);
+            image.format = PNG_FORMAT_RGBA;
+            CHECK(png_image_finish_read(&image, NULL, back, 0, NULL));
+            CHECK(memcmp(rgba, back, sizeof rgba) == 0);
+        }
+    }
+    remove(path);
+    CHECK_FAILS(swarf_picture_write("/nowhere/at/all.png", rgba, WIDTH, HEIGHT), SWARF_ERROR_IO, "/nowhere/at/all.png");
+    CHECK_FAILS(swarf_picture_write("", rgba, WIDTH, HEIGHT), SWARF_ERROR_ARGUMENT, NULL);
+    CHECK_FAILS(swarf_picture_write(path, rgba, 0, 0), SWARF_ERROR_ARGUMENT, "0 x 0");
+    CHECK_FAILS(swarf_picture_write(path, NULL, WIDTH, HEIGHT), SWARF_ERROR_ARGUMENT, NULL);
+    CHECK(access(path, F_OK) != 0);
+}
+
+int main(void)
+{
+    test_random random = test_random_begin(5);
+    check_png(&random);
+    swarf_stock *stock = block(0.25);
+    swarf_scene *scene = NULL;
+    swarf_box box;
+    if (stock && CHECK_OK(swarf_scene_create(stock, &scene)) && CHECK_OK(swarf_stock_box(stock, &box))) {
+        check_face(scene, &box);
+        check_background(scene, &box);
+        check_refusals(scene, &box);
+        check_cancel(scene, &box, &random);
+    }
+    swarf_scene_destroy(scene);
+    swarf_stock_destroy(stock);
+    return test_end();
+}
