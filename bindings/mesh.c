@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* swarf.Mesh and compare_volume(): triangles, immutable, any thread. */
+#include "native.h"
+
+static swarf_mesh *handle_of(PyObject *self)
+{
+    return ((mesh_object *)self)->handle;
+}
+
+static PyObject *mesh_wrap(PyTypeObject *type, swarf_mesh *handle)
+{
+    mesh_object *self = (mesh_object *)PyType_GenericAlloc(type, 0);
+    if (!self) {
+        swarf_mesh_release(handle);
+        return NULL;
+    }
+    self->handle = handle;
+    return (PyObject *)self;
+}
+
+/** End a call that makes a mesh. */
+static PyObject *mesh_finish(PyObject *type, native_call *call, swarf_status status, swarf_mesh *handle)
+{
+    if (call_end(call, state_of_type((PyTypeObject *)type), status)) {
+        swarf_mesh_release(handle);
+        return NULL;
+    }
+    return mesh_wrap((PyTypeObject *)type, handle);
+}
+
+static PyObject *mesh_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"vertices", "triangles", NULL};
+    PyObject *vertices_object, *triangles_object, *result = NULL;
+    double *vertices = NULL;
+    uint32_t *index = NULL;
+    swarf_triangles triangles = {0};
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO:Mesh", names, &vertices_object, &triangles_object)) return NULL;
+    if (buffer_doubles(vertices_object, "vertices", 3, &vertices, &triangles.vertex_count) ||
+        buffer_indices(triangles_object, "triangles", 3, &index, &triangles.triangle_count)) {
+        PyMem_Free(vertices);
+        return NULL;
+    }
+    float *xyz = PyMem_Malloc(3 * triangles.vertex_count * sizeof *xyz + 1);
+    native_call call;
+    if (!xyz) {
+        PyErr_NoMemory();
+    } else if (!call_begin(&call, NULL)) {
+        for (size_t i = 0; i < 3 * triangles.vertex_count; i++) xyz[i] = (float)vertices[i];
+        triangles.xyz = xyz;
+        triangles.index = index;
+        swarf_mesh *handle = NULL;
+        const swarf_status status = swarf_mesh_create(&triangles, &handle);
+        result = mesh_finish((PyObject *)type, &call, status, handle);
+    }
+    PyMem_Free(xyz);
+    PyMem_Free(vertices);
+    PyMem_Free(index);
+    return result;
+}
+
+static void mesh_dealloc(PyObject *self)
+{
+    swarf_mesh_release(handle_of(self));
+    object_free(self);
+}
+
+static PyObject *mesh_read(PyObject *type, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"path", NULL};
+    PyObject *path, *result = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O&:read", names, PyUnicode_FSConverter, &path)) return NULL;
+    native_call call;
+    if (!call_begin(&call, NULL)) {
+        swarf_mesh *handle = NULL;
+        const swarf_status status = swarf_mesh_read(PyBytes_AsString(path), &handle);
+        result = mesh_finish(type, &call, status, handle);
+    }
+    Py_DECREF(path);
+    return result;
+}
+
+static PyObject *mesh_from_stock(PyObject *type, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"stock", "adaptivity", "progress", NULL};
+    PyObject *stock, *progress = NULL;
+    double adaptivity = 0;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$O:from_stock", names,
+                                     state_of_type((PyTypeObject *)type)->stock, &stock, &adaptivity, &progress))
+        return NULL;
+    native_call call;
+    if (call_begin(&call, progress)) return NULL;
+    swarf_mesh *handle = NULL;
+    const swarf_status status =
+        swarf_mesh_create_stock(((stock_object *)stock)->handle, adaptivity, &call.progress, &handle);
+    return mesh_finish(type, &call, status, handle);
+}
+
+static PyObject *mesh_write(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"path", "progress", NULL};
+    PyObject *path, *progress = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O&|$O:write", names, PyUnicode_FSConverter, &path, &progress))
+        return NULL;
+    native_call call;
+    int failed = call_begin(&call, progress);
+    if (!failed) {
+        const swarf_status status = swarf_mesh_write(handle_of(self), PyBytes_AsString(path), &call.progress);
+        failed = call_end(&call, state_of(self), status);
+    }
+    Py_DECREF(path);
+    if (failed) return NULL;
+    Py_RETURN_NONE;
+}
+
+/* ---- properties: measured once, when the mesh was made ---- */
+
+static PyObject *mesh_vertices(PyObject *self, void *Py_UNUSED(closure))
+{
+    const swarf_triangles triangles = swarf_mesh_triangles(handle_of(self));
+    return buffer_view(state_of(self), self, triangles.xyz, "f", sizeof(float), triangles.vertex_count, 3, NULL);
+}
+
+static PyObject *mesh_triangles(PyObject *self, void *Py_UNUSED(closure))
+{
+    const swarf_triangles triangles = swarf_mesh_triangles(handle_of(self));
+    return buffer_view(state_of(self), self, triangles.index, "I", sizeof(uint32_t), triangles.triangle_count, 3, NULL);
+}
+
+static PyObject *mesh_vertex_count(PyObject *self, void *Py_UNUSED(closure))
+{
+    return PyLong_FromSize_t(swarf_mesh_triangles(handle_of(self)).vertex_count);
+}
+
+static PyObject *mesh_triangle_count(PyObject *self, void *Py_UNUSED(closure))
+{
+    return PyLong_FromSize_t(swarf_mesh_triangles(handle_of(self)).triangle_count);
+}
+
+static PyObject *mesh_closed(PyObject *self, void *Py_UNUSED(closure))
+{
+    return PyBool_FromLong(swarf_mesh_topology(handle_of(self)).closed);
+}
+
+static PyObject *mesh_volume(PyObject *self, void *Py_UNUSED(closure))
+{
+    return PyFloat_FromDouble(swarf_mesh_topology(handle_of(self)).volume_mm3);
+}
+
+static PyObject *mesh_area(PyObject *self, void *Py_UNUSED(closure))
+{
+    return PyFloat_FromDouble(swarf_mesh_topology(handle_of(self)).area_mm2);
+}
+
+static PyObject *mesh_bounding_box(PyObject *self, void *Py_UNUSED(closure))
+{
+    const swarf_topology topology = swarf_mesh_topology(handle_of(self));
+    return box_to_python(&topology.box);
+}
+
+static PyObject *mesh_edges(PyObject *self, void *closure)
+{
+    const swarf_topology topology = swarf_mesh_topology(handle_of(self));
+    return PyLong_FromSize_t(*(const size_t *)((const char *)&topology + (size_t)(uintptr_t)closure));
+}
+#define FIELD(name) (void *)(uintptr_t) offsetof(swarf_topology, name)
+
+static PyObject *mesh_repr(PyObject *self)
+{
+    const swarf_triangles triangles = swarf_mesh_triangles(handle_of(self));
+    return PyUnicode_FromFormat("<swarf.Mesh of %zu vertices, %zu triangles, %s>", triangles.vertex_count,
+                                triangles.triangle_count, swarf_mesh_topology(handle_of(self)).closed ? "closed" : "open");
+}
+
+static PyMethodDef mesh_methods[] = {
+    {"read", WITH_KEYWORDS(mesh_read), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
+     "read($type, path)\n--\n\nMesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."},
+    {"from_stock", WITH_KEYWORDS(mesh_from_stock), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
+     "from_stock($type, stock, adaptivity=0.0, *, progress=None)\n--\n\n"
+     "The surface of a stock, closed and oriented outwards; adaptivity 0 (uniform) .. 1."},
+    {"write", WITH_KEYWORDS(mesh_write), METH_VARARGS | METH_KEYWORDS,
+     "write($self, path, *, progress=None)\n--\n\n"
+     "Write .stl or .ply (binary) or .obj, by the suffix; beside the target and renamed, so a failure loses nothing."},
+    {NULL, NULL, 0, NULL},
+};
+
+static PyGetSetDef mesh_getset[] = {
+    {"vertices", mesh_vertices, NULL, "Read-only (n, 3) float32 view, mm.", NULL},
+    {"triangles", mesh_triangles, NULL, "Read-only (n, 3) uint32 view of vertex numbers, outwards.", NULL},
+    {"vertex_count", mesh_vertex_count, NULL, "Number of vertices.", NULL},
+    {"triangle_count", mesh_triangle_count, NULL, "Number of triangles.", NULL},
+    {"closed", mesh_closed, NULL, "Whether every edge is balanced: the surface bounds a volume.", NULL},
+    {"volume", mesh_volume, NULL, "Signed volume, mm3; positive when oriented outwards.", NULL},
+    {"area", mesh_area, NULL, "Area, mm2.", NULL},
+    {"bounding_box", mesh_bounding_box, NULL, "((x, y, z), (x, y, z)) in mm, None when empty.", NULL},
+    {"boundary_edges", mesh_edges, NULL, "Edges of one triangle only.", FIELD(boundary_edges)},
+    {"nonmanifold_edges", mesh_edges, NULL, "Edges of more than two triangles.", FIELD(nonmanifold_edges)},
+    {"misoriented_edges", mesh_edges, NULL, "Edges that two triangles use in one direction.", FIELD(misoriented_edges)},
+    {"degenerate", mesh_edges, NULL, "Triangles with a repeated vertex.", FIELD(degenerate)},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+
+static PyType_Slot mesh_slots[] = {
+    {Py_tp_doc, "Mesh(vertices, triangles)\n--\n\n"
+                "Triangles: vertices an (n, 3) table in mm, triangles an (m, 3) table of vertex numbers,\n"
+                "counter-clockwise seen from outside. Immutable, any thread. ValueError for numbers out of range."},
+    {Py_tp_new, mesh_new},
+    {Py_tp_dealloc, mesh_dealloc},
+    {Py_tp_repr, mesh_repr},
+    {Py_tp_methods, mesh_methods},
+    {Py_tp_getset, mesh_getset},
+    {0, NULL},
+};
+
+PyType_Spec mesh_spec = {
+    .name = "swarf.Mesh",
+    .basicsize = sizeof(mesh_object),
+    .flags = Py_TPFLAGS_DEFAULT | Py_TPFLAGS_IMMUTABLETYPE,
+    .slots = mesh_slots,
+};
+
+/* ---- comparing ---- */
+
+static PyStructSequence_Field comparison_fields[] = {
+    {"design_mm3", "Volume of the design."},
+    {"stock_mm3", "Volume of the stock."},
+    {"excess_mm3", "Stock outside the design: material left."},
+    {"gouge_mm3", "Design outside the stock: material missing."},
+    {NULL, NULL},
+};
+
+PyStructSequence_Desc comparison_desc = {
+    .name = "swarf.Comparison",
+    .doc = "Stock and design by volume, mm3.",
+    .fields = comparison_fields,
+    .n_in_sequence = 4,
+};
+
+const char compare_volume_doc[] =
+    "compare_volume(stock, design, *, progress=None)\n--\n\n"
+    "Compare a stock with a closed design Mesh by volume, on the stock's own voxels -> Comparison.\n"
+    "The stock is unchanged. GeometryError when the design is open.";
+
+PyObject *compare_volume(PyObject *module, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"stock", "design", "progress", NULL};
+    module_state *state = PyModule_GetState(module);
+    PyObject *stock, *design, *progress = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!|$O:compare_volume", names, state->stock, &stock, state->mesh,
+                                     &design, &progress))
+        return NULL;
+    native_call call;
+    if (call_begin(&call, progress)) return NULL;
+    const swarf_triangles triangles = swarf_mesh_triangles(handle_of(design));
+    swarf_comparison found;
+    const swarf_status status =
+        swarf_compare_volume(((stock_object *)stock)->handle, &triangles, &call.progress, &found);
+    if (call_end(&call, state, status)) return NULL;
+    const double values[] = {found.design_mm3, found.stock_mm3, found.excess_mm3, found.gouge_mm3};
+    PyObject *result = PyStructSequence_New(state->comparison);
+    for (Py_ssize_t i = 0; result && i < 4; i++) {
+        PyObject *value = PyFloat_FromDouble(values[i]);
+        if (value)
+            PyStructSequence_SetItem(result, i, value);
+        else
+            Py_CLEAR(result);
+    }
+    return result;
+}

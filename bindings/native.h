@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Inside of the Python extension `swarf._native`: its state, and what its files offer each other.
+ *
+ * Limited API of CPython 3.11, multi-phase init, heap types that cannot be subclassed (so that a type leads to the
+ * module's state), no static objects. Every file is one noun; each type wraps one handle of libswarf.
+ */
+#ifndef SWARF_BINDINGS_NATIVE_H
+#define SWARF_BINDINGS_NATIVE_H
+
+#define PY_SSIZE_T_CLEAN
+#define Py_LIMITED_API 0x030B0000
+#include <Python.h>
+
+#include <stddef.h>
+#include <string.h>
+
+#include "swarf/swarf.h"
+
+/* ---- module.c ---- */
+
+typedef struct module_state {
+    PyTypeObject *cutter;
+    PyTypeObject *program;
+    PyTypeObject *stock;
+    PyTypeObject *simulation;
+    PyTypeObject *mesh;
+    PyTypeObject *view;
+    PyTypeObject *finding;    /* struct sequences */
+    PyTypeObject *comparison;
+    PyObject *error; /* exceptions, see error.c */
+    PyObject *format_error;
+    PyObject *geometry_error;
+    PyObject *cancelled;
+    PyObject *busy_error;
+} module_state;
+
+/** State of the module that made this type. */
+module_state *state_of_type(PyTypeObject *type);
+/** State of the module that made this object's type. */
+module_state *state_of(PyObject *self);
+
+/** Give an object of one of our heap types back. */
+void object_free(PyObject *self);
+
+/** Number of `text` among `names`; -1 with a ValueError that lists them. */
+int choice_find(const char *what, const char *text, const char *const *names, int count);
+
+/** Cast of a function with keywords to the slot's type. */
+#define WITH_KEYWORDS(function) ((PyCFunction)(void (*)(void))(function))
+
+/* ---- error.c ---- */
+
+/** Make the exception classes and add them to the module. */
+int error_setup(PyObject *module, module_state *state);
+/** Raise what a failed status and swarf_error_last() say; always returns NULL. */
+PyObject *error_raise(module_state *state, swarf_status status);
+
+/* ---- call.c ---- */
+
+/** A native call that runs without the GIL, with progress, signals and cancelling. */
+typedef struct native_call {
+    swarf_progress progress; /* pass &call.progress to the library */
+    PyObject *callback;      /* borrowed; NULL: none */
+    PyThreadState *thread;
+    PyObject *type, *value, *traceback; /* exception that the callback or a signal handler raised */
+} native_call;
+
+/** Check the callback (None, NULL or callable), then release the GIL. 0, or -1 with an exception and the GIL held. */
+int call_begin(native_call *call, PyObject *callback);
+/** Take the GIL back and raise what went wrong. 0, or -1 with an exception. */
+int call_end(native_call *call, module_state *state, swarf_status status);
+
+/* ---- buffer.c ---- */
+
+extern PyType_Spec buffer_view_spec;
+
+/** Three finite numbers of a sequence. 0, or -1 with an exception that begins with `name`. */
+int buffer_point(PyObject *object, const char *name, double out[3]);
+/** A table of finite numbers with `columns` columns: a buffer of 2 dimensions and a number format in native byte
+ *  order, strided or not, or a sequence of sequences. *out is freed with PyMem_Free(). 0, or -1 with an exception. */
+int buffer_doubles(PyObject *object, const char *name, Py_ssize_t columns, double **out, size_t *rows);
+/** The same for whole numbers 0 .. 2^32 - 1. */
+int buffer_indices(PyObject *object, const char *name, Py_ssize_t columns, uint32_t **out, size_t *rows);
+/** Read-only memoryview of rows x columns items (columns 0: one dimension) inside `owner`, which it keeps alive.
+ *  `pins` (may be NULL) is a counter in the owner that is raised while the view lives. */
+PyObject *buffer_view(module_state *state, PyObject *owner, const void *data, const char *format, size_t itemsize,
+                      size_t rows, size_t columns, Py_ssize_t *pins);
+
+/* ---- cutter.c ---- */
+
+typedef struct cutter_object {
+    PyObject_HEAD
+    swarf_cutter *handle;
+} cutter_object;
+extern PyType_Spec cutter_spec;
+
+/* ---- program.c ---- */
+
+typedef struct program_object {
+    PyObject_HEAD
+    swarf_program *handle;
+    Py_ssize_t exports; /* views of its arrays: they must not move */
+    Py_ssize_t readers; /* calls without the GIL that read it */
+} program_object;
+extern PyType_Spec program_spec;
+
+/** Check first and count against the program's moves; `count` None means up to the end. */
+int program_range(program_object *program, Py_ssize_t first, PyObject *count, size_t *first_out, size_t *count_out);
+
+/* ---- stock.c ---- */
+
+typedef struct stock_object {
+    PyObject_HEAD
+    swarf_stock *handle;
+} stock_object;
+extern PyType_Spec stock_spec;
+
+/** ((x, y, z), (x, y, z)), or None when the box is empty. */
+PyObject *box_to_python(const swarf_box *box);
+
+/* ---- simulation.c ---- */
+
+extern PyType_Spec simulation_spec;
+extern PyStructSequence_Desc finding_desc;
+extern const char stock_simulate_doc[];
+PyObject *stock_simulate(PyObject *self, PyObject *args, PyObject *keywords);
+
+/* ---- picture.c ---- */
+
+extern const char stock_picture_doc[];
+PyObject *stock_picture(PyObject *self, PyObject *args, PyObject *keywords);
+extern const char stock_cast_doc[];
+PyObject *stock_cast(PyObject *self, PyObject *args, PyObject *keywords);
+
+/* ---- mesh.c ---- */
+
+typedef struct mesh_object {
+    PyObject_HEAD
+    swarf_mesh *handle;
+} mesh_object;
+extern PyType_Spec mesh_spec;
+extern PyStructSequence_Desc comparison_desc;
+extern const char compare_volume_doc[];
+PyObject *compare_volume(PyObject *module, PyObject *args, PyObject *keywords);
+
+#endif

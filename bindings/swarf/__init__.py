@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Milling simulation: what a program does to the stock, before the machine does it.
+
+>>> import swarf
+>>> stock = swarf.Stock.box((0, 0, -5), (40, 20, 0), voxel=0.1)
+>>> program = swarf.Program(start=(5, 10, 5))
+>>> program.add_operation("slot")
+0
+>>> program.set_section(tool=1)
+>>> program.add_line((5, 10, -2), feed_mm_min=100)
+>>> program.add_line((35, 10, -2), feed_mm_min=400)
+>>> simulation = stock.simulate(program, {1: swarf.Cutter("flat:d=6,l=20")})
+>>> swarf.Mesh.from_stock(stock).write("slot.stl")
+"""
+from ._native import (
+    BusyError,
+    Cancelled,
+    Comparison,
+    Cutter,
+    Error,
+    Finding,
+    FormatError,
+    GeometryError,
+    Mesh,
+    Program,
+    Simulation,
+    Stock,
+    compare_volume,
+    isa,
+    memory_peak,
+    set_threads,
+    threads,
+    version,
+)
+from .job import Job
+from .simulate import Result, simulate
+
+__version__ = version()
+
+__all__ = [
+    "BusyError", "Cancelled", "Comparison", "Cutter", "Error", "Finding", "FormatError", "GeometryError", "Job",
+    "Mesh", "Program", "Result", "Simulation", "Stock", "compare_volume", "isa", "memory_peak", "set_threads",
+    "simulate", "threads", "version",
+]

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A job: what every input becomes before it is simulated.
+
+Readers of further inputs are found by the entry point group ``swarf.readers``: the name is the file suffix in lower
+case without the dot, the value a function ``read(path, job=None, progress=None) -> Job``, where ``job`` is the name of
+the job wanted if the file may hold several.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Optional
+
+from ._native import Cutter, Mesh, Program
+
+
+@dataclass
+class Job:
+    """Program, tools and stock of one setup; lengths in mm, all in the coordinates of the stock.
+
+    ``stock`` is None (not known) or one of::
+
+        {"kind": "box", "lo": (x, y, z), "hi": (x, y, z)}
+        {"kind": "cylinder", "base": (x, y, z), "axis": (x, y, z), "radius": r}   axis: from base to the other end
+        {"kind": "mesh", "mesh": Mesh}
+        {"kind": "vdb", "path": path}
+    """
+
+    name: str
+    program: Program
+    tools: dict[int, Cutter] = field(default_factory=dict)
+    tool_names: dict[int, str] = field(default_factory=dict)
+    stock: Optional[dict[str, Any]] = None
+    design: Optional[Mesh] = None
+    notes: list[str] = field(default_factory=list)
