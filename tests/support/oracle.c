@@ -294,6 +294,34 @@ double oracle_distance(const oracle_body *body, const swarf_path *path, const do
     return least;
 }
 
+int oracle_is_smooth(const oracle_body *body, const swarf_path *path, const double point[3], double distance,
+                     double voxel)
+{
+    const double step = 0.05 * voxel;
+    double normal[3], length = 0;
+    for (int i = 0; i < 3; i++) {
+        double a[3] = {point[0], point[1], point[2]}, b[3] = {point[0], point[1], point[2]};
+        a[i] -= step, b[i] += step;
+        normal[i] = (oracle_distance(body, path, b) - oracle_distance(body, path, a)) / (2 * step);
+        length += normal[i] * normal[i];
+    }
+    if (fabs(sqrt(length) - 1) > 0.01) return 0;
+    const double aside[3] = {fabs(normal[0]) < 0.7, fabs(normal[0]) >= 0.7, 0};
+    double u[3], v[3], size = 0;
+    for (int i = 0; i < 3; i++) u[i] = normal[(i + 1) % 3] * aside[(i + 2) % 3] - normal[(i + 2) % 3] * aside[(i + 1) % 3];
+    for (int i = 0; i < 3; i++) size += u[i] * u[i];
+    for (int i = 0; i < 3; i++) u[i] /= sqrt(size);
+    for (int i = 0; i < 3; i++) v[i] = normal[(i + 1) % 3] * u[(i + 2) % 3] - normal[(i + 2) % 3] * u[(i + 1) % 3];
+    for (int k = 0; k < 8; k++) {
+        const double c = 1.5 * voxel * cos(k * 0.7853981633974483), s = 1.5 * voxel * sin(k * 0.7853981633974483);
+        double p[3];
+        for (int i = 0; i < 3; i++) p[i] = point[i] + c * u[i] + s * v[i] - distance * normal[i];
+        /* From the foot of the point, 1.5 voxels along the tangent plane: how far the surface bends away. */
+        if (fabs(oracle_distance(body, path, p)) > 0.15 * voxel || oracle_sign(body, path, p, 0.3 * voxel) < 0) return 0;
+    }
+    return 1;
+}
+
 static void random_meridian_point(const oracle_body *body, test_random *random, double out[2])
 {
     const oracle_edge *edge = &body->edge[test_random_below(random, (uint64_t)body->part_begin[body->parts])];

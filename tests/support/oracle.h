@@ -57,6 +57,11 @@ int oracle_sign(const oracle_body *body, const swarf_path *path, const double po
  *  the sweep it is the Euclidean distance to it. */
 double oracle_distance(const oracle_body *body, const swarf_path *path, const double point[3]);
 
+/** Is the sweep's surface smooth for 1.5 voxels around the foot of a point at this distance? (It bends away from its
+ *  tangent plane by at most 0.15 voxels there, and no second surface comes near.) */
+int oracle_is_smooth(const oracle_body *body, const swarf_path *path, const double point[3], double distance,
+                     double voxel);
+
 /** A point near the surface of the sweep: half of them on the envelope, the rest on the tool at any time and at the
  *  path's ends; moved by up to `spread` mm along each axis. */
 void oracle_random_point(const oracle_body *body, const swarf_path *path, double spread, test_random *random,
