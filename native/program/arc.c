@@ -54,7 +54,8 @@ swarf_status swarf_arc_make(const double start[3], const double end[3], const do
     const double chord[2] = {end[a] - start[a], end[b] - start[b]};
     const double length = hypot(chord[0], chord[1]);
     SWARF_REQUIRE(r0 > same_point_mm && r1 > same_point_mm,
-                  "arc: the radius is %.6g mm at the start and %.6g mm at the end; the centre must lie off both", r0, r1);
+                  "arc: the radius is %.6g mm at the start and %.6g mm at the end; the centre must lie off both", r0,
+                  r1);
 
     /* along the chord to the point as far from the start as from the end */
     const double shift = length > same_point_mm ? (r0 - r1) * (r0 + r1) / (2.0 * length) : 0.0;
