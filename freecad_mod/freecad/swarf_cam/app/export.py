@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs in freecadcmd for the command line: document -> exchange folder. Arguments come in the environment, because
+FreeCAD refuses options that it does not know."""
+
+import os
+import sys
+import traceback
+
+import FreeCAD
+
+from ..core import exchange
+from ..core.errors import JobError
+from . import job as jobs
+
+INPUT, JOB, FOLDER = "SWARF_EXPORT_INPUT", "SWARF_EXPORT_JOB", "SWARF_EXPORT_FOLDER"
+
+
+def main():
+    """Write the folder and end the process, whatever happens: freecadcmd would run on, or start over."""
+    folder = os.environ[FOLDER]
+    status = 1
+    try:
+        document = FreeCAD.openDocument(os.environ[INPUT])
+        exchange.write(folder, jobs.read_job(jobs.pick_job(document, os.environ.get(JOB) or None)))
+        status = 0
+    except JobError as error:
+        exchange.write_error(folder, str(error))
+    except BaseException as error:  # nothing may reach freecadcmd; the other side shows the text
+        traceback.print_exc()
+        exchange.write_error(folder, "%s: %s" % (type(error).__name__, error))
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)

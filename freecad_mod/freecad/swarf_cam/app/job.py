@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""FreeCAD's Path/CAM jobs, known by what they have: a job of 0.20 opened in 1.x has no Proxy any more."""
+
+from ..core import program
+from ..core.errors import JobError
+from ..core.job import JobData
+from ..core.placement import Placement
+from . import shapes, tools
+
+MARKS = ("Operations", "Tools", "Stock", "Model")
+
+
+def is_job(obj):
+    """True for a Path/CAM job."""
+    return all(hasattr(obj, mark) for mark in MARKS) and hasattr(obj.Operations, "Group")
+
+
+def find_jobs(document):
+    """All jobs of a document, in its order."""
+    return [obj for obj in document.Objects if is_job(obj)]
+
+
+def pick_job(document, name=None):
+    """The job with this name or label, or the only one. JobError that lists the jobs otherwise."""
+    jobs = find_jobs(document)
+    if not jobs:
+        raise JobError("there is no Path/CAM job in the document")
+    names = ", ".join("'%s'" % job.Label for job in jobs)
+    if name is None:
+        if len(jobs) > 1:
+            raise JobError("the document holds several jobs, name one of them: %s" % names)
+        return jobs[0]
+    for job in jobs:
+        if name in (job.Name, job.Label):
+            return job
+    raise JobError("there is no job '%s'; the document holds %s" % (name, names))
+
+
+def property_of(operation, name):
+    """A property of an operation, or of what it dresses up; None when neither has it."""
+    for _ in range(100):  # dressups over dressups; a document cannot have a cycle, a broken one may
+        if operation is None:
+            return None
+        if name in getattr(operation, "PropertiesList", ()):
+            return getattr(operation, name)
+        operation = getattr(operation, "Base", None)
+        if isinstance(operation, (list, tuple)):
+            operation = operation[0] if operation else None
+            if isinstance(operation, (list, tuple)):
+                return None
+    return None
+
+
+def is_active(operation):
+    """Whether an operation takes part."""
+    return property_of(operation, "Active") is not False
+
+
+def operations_of(job):
+    """Objects with a path among the job's operations, in order."""
+    group = getattr(job.Operations, "Group", None) or []
+    return [operation for operation in group if hasattr(operation, "Path")]
+
+
+def placement_of(operation):
+    """core Placement of an operation."""
+    placement = getattr(operation, "Placement", None)
+    if placement is None or placement.isIdentity():
+        return Placement()
+    matrix = placement.toMatrix()
+    return Placement(((matrix.A11, matrix.A12, matrix.A13), (matrix.A21, matrix.A22, matrix.A23),
+                      (matrix.A31, matrix.A32, matrix.A33)), (matrix.A14, matrix.A24, matrix.A34))
+
+
+def _moves(commands):
+    """Whether any command may move the tool."""
+    return any(program.canonical(command.Name)[:1] == "G" and any(axis in command.Parameters for axis in "XYZ")
+               for command in commands if not program.is_comment(command.Name))
+
+
+def _operations(job, notes):
+    """core Operations of the active ones, and the tool controllers they use."""
+    result, controllers = [], {}
+    for obj in operations_of(job):
+        if not is_active(obj):
+            notes.append("The operation '%s' is not active and was left out." % obj.Label)
+            continue
+        commands = obj.Path.Commands
+        controller = property_of(obj, "ToolController")
+        if controller is None:
+            if _moves(commands):
+                raise JobError("the operation '%s' has no tool controller" % obj.Label)
+            if not result:
+                continue
+            name, number, tool_commands = result[-1].controller, result[-1].tool, ()
+        else:
+            name, number = controller.Name, int(controller.ToolNumber)
+            tool_commands = controller.Path.Commands
+            controllers[name] = controller
+        result.append(program.Operation(obj.Label, commands, number, name, tool_commands, placement_of(obj)))
+    return result, controllers.values()
+
+
+def _tools(controllers):
+    result, owners = {}, {}
+    for controller in controllers:
+        number = int(controller.ToolNumber)
+        entry = tools.describe(controller)
+        if number in result and result[number][1] != entry[1]:
+            raise JobError("the tool controllers '%s' and '%s' both have the tool number %d, with different tools"
+                           % (owners[number], controller.Label, number))
+        result[number], owners[number] = entry, controller.Label
+    return result
+
+
+def read_job(job):
+    """The JobData of a job. JobError says what stands in the way. Reads only."""
+    notes = []
+    operations, controllers = _operations(job, notes)
+    if not operations:
+        raise JobError("the job '%s' has no active operation" % job.Label)
+    table = program.build(operations)
+    if not len(table):
+        raise JobError("the operations of the job '%s' hold no moves: recompute it" % job.Label)
+    return JobData(job.Label, table, _tools(controllers), shapes.stock_of(job), shapes.design_of(job), notes)

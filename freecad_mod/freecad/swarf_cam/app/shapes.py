@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Shapes of a job as a box or triangles, in the document's coordinates."""
+
+import array
+
+from ..core.errors import JobError
+
+# Greatest distance of triangles from a curved face, mm: a quarter of a usual tolerance of 0.02.
+DEFLECTION_MM = 0.005
+
+# A shape is taken for its bounding box when their volumes and corners agree to this, relative and in mm.
+BOX_TOLERANCE = 1e-7
+
+
+def as_box(shape):
+    """(lo, hi) of a shape that is a block along the axes, else None."""
+    if len(shape.Faces) != 6 or len(shape.Vertexes) != 8:
+        return None
+    columns = [[getattr(vertex, axis) for vertex in shape.Vertexes] for axis in "XYZ"]
+    lo, hi = tuple(map(min, columns)), tuple(map(max, columns))
+    volume = (hi[0] - lo[0]) * (hi[1] - lo[1]) * (hi[2] - lo[2])
+    if volume <= 0 or abs(shape.Volume - volume) > BOX_TOLERANCE * volume:
+        return None
+    if any(min(abs(value - low), abs(value - high)) > BOX_TOLERANCE
+           for column, low, high in zip(columns, lo, hi) for value in column):
+        return None
+    return tuple(round(value, 9) for value in lo), tuple(round(value, 9) for value in hi)
+
+
+def as_mesh(found):
+    """(points, triangles) of shapes, one after the other."""
+    points, triangles = array.array("d"), array.array("I")
+    for shape in found:
+        base = len(points) // 3
+        vertices, facets = shape.tessellate(DEFLECTION_MM)
+        for vertex in vertices:
+            points.extend((vertex.x, vertex.y, vertex.z))
+        for facet in facets:
+            if len(set(facet)) == 3:
+                triangles.extend(base + index for index in facet)
+    return points, triangles
+
+
+def stock_of(job):
+    """The stock as a dict of kind "box" or "mesh". JobError when there is none."""
+    shape = getattr(job.Stock, "Shape", None)
+    if shape is None or shape.isNull() or not shape.Solids:
+        raise JobError("the job '%s' has no stock, or it is not a solid: set it up in the job's Setup page" % job.Label)
+    box = as_box(shape)
+    if box:
+        return {"kind": "box", "lo": box[0], "hi": box[1]}
+    return {"kind": "mesh", "mesh": as_mesh(shape.Solids)}
+
+
+def design_of(job):
+    """The model as one mesh, None when it has no solid."""
+    solids = []
+    for model in getattr(job.Model, "Group", None) or []:
+        shape = getattr(model, "Shape", None)
+        if shape is not None and not shape.isNull():
+            solids.extend(shape.Solids)
+    return as_mesh(solids) if solids else None

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The state of a job as a signature: cheap enough for every recompute."""
+
+import hashlib
+
+from ..core.signature import signature
+from . import job as jobs
+from . import tools
+
+
+def _commands(path):
+    """Hash of a path's commands, to 5 decimals: a saved document keeps 6."""
+    digest = hashlib.sha256()
+    for command in path.Commands:
+        words = ["%s%.5f" % (letter, value + 0.0) for letter, value in sorted(command.Parameters.items())]
+        digest.update(("%s %s\n" % (command.Name, " ".join(words))).replace("-0.00000", "0.00000").encode())
+    return digest.hexdigest()
+
+
+def _shape(shape):
+    """Measures that no usual change of a shape leaves alone, to what survives saving."""
+    if shape is None or shape.isNull():
+        return None
+    box = shape.BoundBox
+    measures = [box.XMin, box.YMin, box.ZMin, box.XMax, box.YMax, box.ZMax, shape.Volume, shape.Area]
+    if shape.Solids:
+        for solid in shape.Solids:
+            measures += list(solid.CenterOfMass)
+    return ["%.5f" % (round(value, 5) + 0.0) for value in measures]
+
+
+def job_signature(job, voxel_mm):
+    """Signature of everything a simulation of the job reads; None when there is no job to read."""
+    if job is None or not jobs.is_job(job):
+        return None
+    operations, bits = [], {}
+    for obj in jobs.operations_of(job):
+        if not jobs.is_active(obj):
+            continue
+        controller = jobs.property_of(obj, "ToolController")
+        placement = jobs.placement_of(obj)
+        entry = [obj.Label, _commands(obj.Path), placement.rotation, placement.base]
+        if controller is not None:
+            entry += [controller.Name, int(controller.ToolNumber), _commands(controller.Path)]
+            tool = getattr(controller, "Tool", None)
+            if tool is not None:
+                bits[controller.Name] = [tools.shape_type(tool), tools.parameters(tool),
+                                         _shape(getattr(tool, "Shape", None))]
+        operations.append(entry)
+    design = [_shape(getattr(model, "Shape", None)) for model in getattr(job.Model, "Group", None) or []]
+    return signature(operations, bits, _shape(getattr(job.Stock, "Shape", None)), design, float(voxel_mm))

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A milling job as plain data: what is read from a FreeCAD document and handed to the simulation."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass
+class JobData:
+    """Lengths in mm, in the document's coordinates.
+
+    moves: moves.MoveTable. tools: number -> (name, parts as core.cutter.parts gives them). stock: a dict with
+    "kind" "box" and "lo", "hi", or "kind" "mesh" and "mesh". Meshes, also design (None: no model), are pairs
+    (points, triangles): array('d') of x y z and array('I') of three indices each.
+    notes: what the reader left out or assumed, one sentence each.
+    """
+
+    name: str
+    moves: Any
+    tools: dict
+    stock: dict
+    design: Any = None
+    notes: list = field(default_factory=list)

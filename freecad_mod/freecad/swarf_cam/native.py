@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The native module at work: JobData -> swarf objects, and the simulation of a job. Imports no FreeCAD, touches no
+document: runs in any thread."""
+
+import importlib
+import os
+import sys
+import time
+from dataclasses import dataclass, field
+
+from . import FOLDER
+from .core.errors import JobError
+
+HELP = ("Swarf's native module is missing or cannot be loaded (%s). Install it with the Debian package of Swarf, or "
+        "build it in place (see README.md), then start FreeCAD again.")
+
+# Where a build in place puts the Python package, seen from the add-on's own folder.
+BUILD_IN_PLACE = os.path.join("..", "build", "python")
+
+
+def load():
+    """The module swarf. JobError says how to get it."""
+    try:
+        return importlib.import_module("swarf")
+    except ImportError as error:
+        root = os.path.dirname(os.path.dirname(FOLDER))
+        built = os.path.normpath(os.path.join(root, BUILD_IN_PLACE))
+        if os.path.isdir(os.path.join(built, "swarf")) and built not in sys.path:
+            sys.path.append(built)
+            importlib.invalidate_caches()
+            return load()
+        raise JobError(HELP % error) from error
+
+
+def is_available():
+    """Whether the native module can be loaded."""
+    try:
+        load()
+    except JobError:
+        return False
+    return True
+
+
+def _table(values, columns):
+    return memoryview(values).cast("B").cast(values.typecode, (len(values) // columns, columns))
+
+
+def to_mesh(mesh):
+    """swarf.Mesh of a pair (points, triangles)."""
+    points, triangles = mesh
+    return load().Mesh(_table(points, 3), _table(triangles, 3))
+
+
+def to_cutters(tools):
+    """number -> swarf.Cutter of JobData.tools. JobError names the tool that is impossible."""
+    swarf = load()
+    result = {}
+    for number, (name, parts) in tools.items():
+        try:
+            result[number] = swarf.Cutter.from_parts(parts)
+        except (ValueError, swarf.Error) as error:
+            raise JobError("the tool '%s' (T%d): %s" % (name, number, error)) from error
+    return result
+
+
+def to_program(table):
+    """swarf.Program of a MoveTable."""
+    return table.play(load().Program())
+
+
+def to_job(data):
+    """swarf.Job, the command line's view of a job."""
+    stock = dict(data.stock)
+    if stock["kind"] == "mesh":
+        stock["mesh"] = to_mesh(stock["mesh"])
+    return load().Job(name=data.name, program=to_program(data.moves), tools=to_cutters(data.tools),
+                      tool_names={number: name for number, (name, _) in data.tools.items()}, stock=stock,
+                      design=to_mesh(data.design) if data.design else None, notes=list(data.notes))
+
+
+@dataclass
+class Result:
+    """What a simulation came to; volumes in mm3. stock_file and mesh_file lie in the folder that was given.
+    excess and gouge are None without a design."""
+
+    stock_file: str
+    mesh_file: str
+    moves: int
+    operations: list
+    removed: list
+    volume_initial: float
+    volume_final: float
+    excess: float = None
+    gouge: float = None
+    findings: list = field(default_factory=list)
+    errors: int = 0
+    seconds: float = 0.0
+
+
+def stock_box(stock):
+    """(lo, hi) of a JobData's stock."""
+    if stock["kind"] == "box":
+        return stock["lo"], stock["hi"]
+    points = stock["mesh"][0]
+    return tuple(min(points[i::3]) for i in range(3)), tuple(max(points[i::3]) for i in range(3))
+
+
+def default_voxel(lo, hi):
+    """A voxel size that shows a part of this size at once: its longest edge in 400, rounded to one digit, mm."""
+    edge = max(b - a for a, b in zip(lo, hi)) / 400
+    return float("%.0e" % edge)
+
+
+def estimate(lo, hi, voxel_mm):
+    """Bytes that simulating a stock of this size may take. ValueError for an impossible voxel size."""
+    return load().Stock.estimate(lo, hi, voxel_mm)
+
+
+def make_stock(stock, voxel_mm, progress=None):
+    """swarf.Stock of a JobData's stock."""
+    swarf = load()
+    if stock["kind"] == "box":
+        return swarf.Stock.box(stock["lo"], stock["hi"], voxel_mm)
+    return swarf.Stock.from_mesh(to_mesh(stock["mesh"]), voxel_mm, progress=progress)
+
+
+def simulate(data, voxel_mm, folder, progress=None):
+    """Cut the stock of a JobData and write stock.vdb and stock.stl into a folder -> Result.
+
+    progress: called with the fraction done, any thread; a true answer cancels (swarf.Cancelled). Raises JobError for
+    a tool that is impossible or cuts nothing, MemoryError before any work, swarf.Error.
+    """
+    swarf = load()
+    begin = time.monotonic()
+
+    def stage(first, last):
+        return None if progress is None else lambda fraction: progress(first + (last - first) * fraction)
+
+    for number, (name, parts) in data.tools.items():
+        if not any(kind == "flutes" for kind, _ in parts) and data.moves.feeds_with(number):
+            raise JobError("the tool '%s' (T%d) has no flutes and cannot cut" % (name, number))
+    cutters = to_cutters(data.tools)
+    program = to_program(data.moves)
+    stock = make_stock(data.stock, voxel_mm, stage(0.0, 0.1))
+    outcome = stock.simulate(program, cutters, progress=stage(0.1, 0.6))
+    comparison = None
+    if data.design:
+        comparison = swarf.compare_volume(stock, to_mesh(data.design), progress=stage(0.6, 0.8))
+    mesh_file, stock_file = os.path.join(folder, "stock.stl"), os.path.join(folder, "stock.vdb")
+    swarf.Mesh.from_stock(stock, progress=stage(0.8, 0.9)).write(mesh_file)
+    stock.write(stock_file, progress=stage(0.9, 1.0))
+    names = list(program.operations)
+    findings = ["%s: operation '%s', command %d: %s" % (
+        item.severity, names[item.operation] if 0 <= item.operation < len(names) else "-", item.line, item.text)
+        for item in outcome.findings]
+    return Result(
+        stock_file, mesh_file, len(data.moves), names, list(outcome.removed_by_operation), outcome.volume_initial,
+        outcome.volume_final, comparison.excess_mm3 if comparison else None,
+        comparison.gouge_mm3 if comparison else None, findings,
+        sum(item.severity == "error" for item in outcome.findings), time.monotonic() - begin)
