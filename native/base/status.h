@@ -15,11 +15,10 @@ swarf_status swarf_fail(swarf_status status, const char *format, ...) SWARF_PRIN
 /** The same with "prefix: " before the text of the failure that is already kept. */
 swarf_status swarf_fail_within(swarf_status status, const char *format, ...) SWARF_PRINTF(2, 3);
 
-/* Static analysis sees one file at a time and would follow the path on which a failure is no failure. */
-#ifdef __clang_analyzer__
+/* Compilers and analyzers see one file at a time: told that the status comes back as it went in, they do not follow
+ * the path on which a failure is no failure, and their warnings about it go away. */
 #define swarf_fail(status, ...) (swarf_fail((status), __VA_ARGS__), (status))
 #define swarf_fail_within(status, ...) (swarf_fail_within((status), __VA_ARGS__), (status))
-#endif
 
 /** Leave the calling function with the status of `call` when it failed. */
 #define SWARF_TRY(call)                                                                                                \
