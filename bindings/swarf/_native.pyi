@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Milling simulation: the face of libswarf. Lengths in mm. Import the package swarf instead."""
+import os
+from typing import Any, Callable, Iterable, Literal, NamedTuple, Optional, Sequence, Union, final
+
+from typing_extensions import Buffer
+
+#: Called with the fraction done, a few dozen times a second; a true answer cancels (Cancelled), an exception cancels
+#: and comes out unchanged. Signals such as Ctrl-C cancel too.
+Progress = Optional[Callable[[float], Any]]
+Path = Union[str, bytes, os.PathLike[str], os.PathLike[bytes]]
+Point = Sequence[float]
+#: A table of n rows: a buffer of two dimensions (any number format in native byte order, strided or not), or rows.
+Table = Union[Buffer, Sequence[Sequence[float]]]
+PartKind = Literal["flutes", "shank", "holder"]
+
+class Error(Exception):
+    """Something libswarf could not do; base of its own exceptions."""
+
+class FormatError(Error):
+    """A file or text is not what it should be; the text says where."""
+
+class GeometryError(Error):
+    """A shape that cannot be worked with, e.g. an open mesh."""
+
+class Cancelled(Error):
+    """The progress callback asked to stop; the objects stay valid."""
+
+class BusyError(Error):
+    """The object is in use by another call."""
+
+def version() -> str:
+    """Version of libswarf, e.g. "0.1.0"."""
+
+def threads() -> int:
+    """Number of threads the library uses."""
+
+def set_threads(count: int) -> None:
+    """Set how many threads the library may use in this process, 1 .. 1024; 0: one per core.
+    Results never depend on it."""
+
+def isa() -> str:
+    """Instruction set in use: "scalar", "avx2" or "avx512"."""
+
+def memory_peak() -> int:
+    """Peak resident memory of this process in bytes, 0 where the system does not tell."""
+
+@final
+class Cutter:
+    """A cutter: a body of revolution about +z, tip at z = 0, from text such as "flat:d=3,l=18" or
+    "bull:d=6,r=1,l=20,sd=6,sl=30" (mm and degrees). FormatError names the word that is wrong. Any thread."""
+
+    def __new__(cls, text: str) -> Cutter: ...
+    @classmethod
+    def from_parts(cls, parts: Iterable[tuple[PartKind, Table]], /) -> Cutter:
+        """A cutter from (kind, nodes) pairs: nodes an (n, 3) table of r, z (mm) and bulge (tan of a quarter of the
+        arc's angle to the next node, 0 for a line), from the axis at the lowest height up and back to the axis.
+        ValueError, or GeometryError for an impossible meridian."""
+    @property
+    def parts(self) -> tuple[tuple[PartKind, memoryview], ...]:
+        """Tuple of (kind, read-only (n, 3) float64 view of r, z, bulge)."""
+    def radius(self, kind: PartKind = "flutes") -> float:
+        """Greatest radius of the parts of one kind, mm; 0 if it has none."""
+    def extent(self, kind: PartKind = "flutes") -> tuple[float, float]:
+        """Lowest and highest z of the parts of one kind, mm; (0, 0) if it has none."""
+    def volume(self, kind: PartKind = "flutes") -> float:
+        """Volume of the parts of one kind, mm3, exact (Pappus)."""
+    def radius_at(self, z: float, kind: PartKind = "flutes") -> float:
+        """Radius of the parts of one kind at height z, mm; -1 outside."""
+
+@final
+class Program:
+    """What a machine does: a flat array of moves in mm, in the coordinates of the stock, from where the tool stands
+    first (three numbers; None: unknown). One thread builds, many may read; building while a call reads raises
+    BusyError, while a view lives BufferError. len() is the number of moves."""
+
+    def __new__(cls, start: Optional[Point] = None) -> Program: ...
+    @classmethod
+    def read_gcode(cls, path: Path, *, start: Optional[Point] = None, progress: Progress = None) -> Program:
+        """Program from a G-code file; ``start`` is where the tool stands first. OSError, or FormatError
+        "file:line:column: error: 'word' ...". Any thread."""
+    @classmethod
+    def parse_gcode(
+        cls, text: Union[str, bytes], *, name: str = "text", start: Optional[Point] = None, progress: Progress = None
+    ) -> Program:
+        """The same from text; ``name`` stands for the file in errors."""
+    def add_operation(self, name: str) -> int:
+        """Add an operation, make it current and return its index."""
+    def set_section(
+        self,
+        *,
+        tool: int = -1,
+        operation: int = 0,
+        spindle: Literal["off", "cw", "ccw"] = "off",
+        spindle_rpm: float = 0.0,
+        coolant: int = 0,
+        work_offset: int = 0,
+    ) -> None:
+        """What the moves that follow share: tool number (-1: none), index of the operation, spindle, coolant (bit 0
+        mist, bit 1 flood), work offset (0 machine, 1 G54 ...)."""
+    def add_line(
+        self,
+        end: Point,
+        *,
+        kind: Literal["rapid", "feed", "dwell", "tool_change", "probe", "position"] = "feed",
+        feed_mm_min: float = 0.0,
+        line: int = 0,
+    ) -> None:
+        """Add a straight move to ``end`` (three numbers, mm); kind "feed", "rapid", "probe" or "position"."""
+    def add_arc(
+        self,
+        end: Point,
+        centre: Point,
+        *,
+        plane: Literal["xy", "zx", "yz"] = "xy",
+        ccw: bool = True,
+        turns: int = 1,
+        feed_mm_min: float = 0.0,
+        line: int = 0,
+    ) -> None:
+        """Add an arc or helix about ``centre``; ``turns`` counts the passes, end equal to the start gives a full
+        circle. ValueError when the radii of start and end do not fit."""
+    def add_dwell(self, seconds: float, *, line: int = 0) -> None:
+        """Add a pause at the current position."""
+    def add_tool_change(self, *, line: int = 0) -> None:
+        """Add a change to the tool of the current section."""
+    def seconds(self, rapid_mm_min: float = 5000.0) -> float:
+        """Seconds that the moves take at their feeds, rapids at ``rapid_mm_min``, without acceleration."""
+    @property
+    def moves(self) -> memoryview:
+        """Read-only view of the moves: records end (3 float64), feed_mm_min (float32), line (uint32), arc (int32,
+        -1: straight), section_kind (uint32: section * 8 + kind). While a view lives the program cannot grow."""
+    @property
+    def arcs(self) -> memoryview:
+        """Read-only view of the arcs: records centre (3 float64), angle_rad, plane (int32), reserved."""
+    @property
+    def sections(self) -> memoryview:
+        """Read-only view of the sections: records tool, operation, spindle, coolant (int32), spindle_rpm (float64),
+        work_offset, reserved (int32)."""
+    @property
+    def operations(self) -> tuple[str, ...]:
+        """Names of the operations."""
+    @property
+    def tools(self) -> tuple[int, ...]:
+        """Numbers of the tools that feed moves use, sorted; -1: no tool loaded."""
+    def __len__(self) -> int: ...
+
+@final
+class Stock:
+    """What is being milled: a narrow-band level set in mm. Made by Stock.box(), cylinder(), from_mesh() or read().
+    Long calls use all cores, take a progress callback and leave a consistent stock. A stock that is in use by another
+    call raises BusyError."""
+
+    @classmethod
+    def box(cls, lo: Point, hi: Point, voxel: float, *, memory_limit: int = 0) -> Stock:
+        """A block between two corners. MemoryError, before any work, when the estimate exceeds ``memory_limit`` bytes
+        (0: 80 % of what is free); its text names a voxel size that would fit."""
+    @classmethod
+    def cylinder(cls, base: Point, axis: Point, radius: float, voxel: float, *, memory_limit: int = 0) -> Stock:
+        """A round bar from the centre of one end along the vector ``axis``, whose length is the bar's."""
+    @classmethod
+    def from_mesh(cls, mesh: Mesh, voxel: float, *, memory_limit: int = 0, progress: Progress = None) -> Stock:
+        """The inside of a closed Mesh. GeometryError when it is open or not oriented outwards."""
+    @classmethod
+    def read(cls, path: Path, *, progress: Progress = None) -> Stock:
+        """From the first level set of a .vdb file, with its voxel size. OSError, FormatError."""
+    @classmethod
+    def estimate(cls, lo: Point, hi: Point, voxel: float) -> int:
+        """Bytes that a stock filling this box may need while it is cut."""
+    def write(self, path: Path, *, progress: Progress = None) -> None:
+        """To a .vdb file; beside the target and renamed, so a failure loses nothing."""
+    def copy(self, /) -> Stock:
+        """A stock of its own with the same content."""
+    @property
+    def voxel(self) -> float:
+        """Edge of a voxel, mm."""
+    def bounding_box(self, /) -> Optional[tuple[tuple[float, float, float], tuple[float, float, float]]]:
+        """((x, y, z), (x, y, z)) of the material in mm, to half a voxel; None when nothing is left."""
+    def volume(self, /) -> float:
+        """Volume of the material, mm3."""
+    def hash(self, /) -> int:
+        """64-bit hash of the content, the same whatever the threads or kernels."""
+    def size(self, /) -> tuple[int, int]:
+        """(leaves of 8x8x8 voxels, bytes held)."""
+    def sample(self, points: Table, /) -> memoryview:
+        """Signed distance (mm, negative inside, trilinear) at an (n, 3) table of points: read-only float32 view.
+        Beyond the narrow band +-3 voxels."""
+    def cut(
+        self, cutter: Cutter, program: Program, first: int = 0, *, count: Optional[int] = None, progress: Progress = None
+    ) -> None:
+        """Cut with the flutes of one cutter along moves first .. first + count - 1 of a program, whatever their tool,
+        all at once. Cancelling leaves some moves cut."""
+    def simulate(
+        self,
+        program: Program,
+        tools: dict[int, Cutter],
+        *,
+        first: int = 0,
+        count: Optional[int] = None,
+        batch: int = 0,
+        removed_per_move: bool = False,
+        progress: Progress = None,
+    ) -> Simulation:
+        """Play moves first .. first + count - 1 of a program with tools {number: Cutter}. ``batch`` moves are cut at
+        once: 0 as many as share a tool and an operation, 1 move by move. A tool that is missing or has no flutes is a
+        finding of class "error". Cancelling leaves the moves so far cut."""
+    def union(self, other: Stock, /) -> None:
+        """Add another stock of the same voxels to this one."""
+    def intersection(self, other: Stock, /) -> None:
+        """Keep what is in another stock of the same voxels too."""
+    def difference(self, other: Stock, /) -> None:
+        """Take another stock of the same voxels away from this one."""
+    def picture(
+        self,
+        path: Optional[Path] = None,
+        width: int = 1024,
+        height: int = 768,
+        *,
+        view: Literal["isometric", "top", "bottom", "front", "rear", "left", "right"] = "isometric",
+        samples: int = 3,
+        perspective: bool = False,
+        progress: Progress = None,
+    ) -> Optional[bytes]:
+        """A shaded picture with samples x samples rays per pixel. With a path it is written as PNG and None is
+        returned; else RGBA bytes, 4 x width x height, rows from the top."""
+    def cast(self, origins: Table, directions: Table) -> tuple[memoryview, memoryview]:
+        """First hits of rays, (n, 3) tables in mm -> (distances: float64 view, in lengths of the direction, inf for
+        none; normals: (n, 3) float32 view)."""
+
+class Finding(NamedTuple):
+    """Something the simulation noticed."""
+
+    severity: Literal["note", "warning", "error"]
+    operation: int
+    move: int
+    line: int
+    tool: int
+    text: str
+
+@final
+class Simulation:
+    """What Stock.simulate() came to. Immutable, any thread."""
+
+    @property
+    def removed_by_operation(self) -> tuple[float, ...]:
+        """mm3 removed by each operation of the program, in its order."""
+    @property
+    def removed_per_move(self) -> Optional[memoryview]:
+        """Read-only float64 view of the mm3 that each played move removed; None unless asked for."""
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Tuple of Finding, in the order of the moves."""
+    @property
+    def volume_initial(self) -> float:
+        """Volume before, mm3."""
+    @property
+    def volume_final(self) -> float:
+        """Volume after, mm3."""
+
+@final
+class Mesh:
+    """Triangles: vertices an (n, 3) table in mm, triangles an (m, 3) table of vertex numbers, counter-clockwise seen
+    from outside. Immutable, any thread. ValueError for numbers out of range."""
+
+    def __new__(cls, vertices: Table, triangles: Table) -> Mesh: ...
+    @classmethod
+    def read(cls, path: Path) -> Mesh:
+        """Mesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."""
+    @classmethod
+    def from_stock(cls, stock: Stock, adaptivity: float = 0.0, *, progress: Progress = None) -> Mesh:
+        """The surface of a stock, closed and oriented outwards; adaptivity 0 (uniform) .. 1."""
+    def write(self, path: Path, *, progress: Progress = None) -> None:
+        """Write .stl or .ply (binary) or .obj, by the suffix; beside the target and renamed, so a failure loses
+        nothing."""
+    @property
+    def vertices(self) -> memoryview:
+        """Read-only (n, 3) float32 view, mm."""
+    @property
+    def triangles(self) -> memoryview:
+        """Read-only (n, 3) uint32 view of vertex numbers, outwards."""
+    @property
+    def vertex_count(self) -> int:
+        """Number of vertices."""
+    @property
+    def triangle_count(self) -> int:
+        """Number of triangles."""
+    @property
+    def closed(self) -> bool:
+        """Whether every edge is balanced: the surface bounds a volume."""
+    @property
+    def volume(self) -> float:
+        """Signed volume, mm3; positive when oriented outwards."""
+    @property
+    def area(self) -> float:
+        """Area, mm2."""
+    @property
+    def bounding_box(self) -> Optional[tuple[tuple[float, float, float], tuple[float, float, float]]]:
+        """((x, y, z), (x, y, z)) in mm, None when empty."""
+    @property
+    def boundary_edges(self) -> int:
+        """Edges of one triangle only."""
+    @property
+    def nonmanifold_edges(self) -> int:
+        """Edges of more than two triangles."""
+    @property
+    def misoriented_edges(self) -> int:
+        """Edges that two triangles use in one direction."""
+    @property
+    def degenerate(self) -> int:
+        """Triangles with a repeated vertex."""
+
+class Comparison(NamedTuple):
+    """Stock and design by volume, mm3."""
+
+    design_mm3: float
+    stock_mm3: float
+    excess_mm3: float
+    gouge_mm3: float
+
+def compare_volume(stock: Stock, design: Mesh, *, progress: Progress = None) -> Comparison:
+    """Compare a stock with a closed design Mesh by volume, on the stock's own voxels. The stock is unchanged.
+    GeometryError when the design is open."""

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A progress bar for a terminal."""
+from __future__ import annotations
+
+import shutil
+import sys
+from typing import Optional, TextIO
+
+
+class Bar:
+    """One line that is drawn over itself; silent where the stream is no terminal."""
+
+    def __init__(self, stream: Optional[TextIO] = None) -> None:
+        self.stream = sys.stderr if stream is None else stream
+        self.active = self.stream.isatty()
+        self._drawn = ""
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        """Show that ``fraction`` (0..1) of a stage is done."""
+        if not self.active:
+            return
+        width = max(10, min(40, shutil.get_terminal_size().columns - 24))
+        filled = round(max(0.0, min(1.0, fraction)) * width)
+        line = f"{stage:8} [{'#' * filled}{'.' * (width - filled)}] {100 * filled // width:3d} %"
+        if line != self._drawn:
+            self._drawn = line
+            self.stream.write("\r" + line)
+            self.stream.flush()
+
+    def close(self) -> None:
+        """Remove the bar; what is written next starts on a clean line."""
+        if self._drawn:
+            self.stream.write("\r" + " " * len(self._drawn) + "\r")
+            self.stream.flush()
+            self._drawn = ""

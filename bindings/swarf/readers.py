@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From a file to a Job, by its suffix: G-code here, everything else by entry points (see ``job``)."""
+from __future__ import annotations
+
+import importlib.metadata
+import os
+from typing import Any, Callable, Optional
+
+from ._native import Program
+from .job import Job
+
+#: Suffixes that machine controls and post-processors give G-code.
+GCODE_SUFFIXES = (".nc", ".ngc", ".gcode", ".gc", ".cnc", ".tap", ".txt")
+
+#: Entry point group of further readers.
+GROUP = "swarf.readers"
+
+Reader = Callable[..., Job]
+
+
+def readers() -> dict[str, importlib.metadata.EntryPoint]:
+    """Registered readers by suffix with its dot; none is imported."""
+    found = importlib.metadata.entry_points(group=GROUP)
+    return {"." + entry.name.lower(): entry for entry in found}
+
+
+def read_gcode(path: str, progress: Optional[Callable[[float], Any]] = None) -> Job:
+    """A Job with the program of a G-code file; tools and stock are for the caller to add."""
+    return Job(name=os.path.basename(path), program=Program.read_gcode(path, progress=progress))
+
+
+def read(path: str, job: Optional[str] = None, progress: Optional[Callable[[float], Any]] = None) -> Job:
+    """The Job in a file; ``job`` names one of several. ValueError for an unknown suffix or a job G-code cannot have."""
+    suffix = os.path.splitext(path)[1].lower()
+    if suffix in GCODE_SUFFIXES:
+        if job is not None:
+            raise ValueError(f"{path}: a G-code file is one program, it has no job to choose")
+        return read_gcode(path, progress)
+    known = readers()
+    entry = known.get(suffix)
+    if entry is None:
+        hint = "" if ".fcstd" in known else "; .FCStd needs the FreeCAD add-on of Swarf"
+        raise ValueError(f"{path}: unknown suffix {suffix!r}; known: {', '.join([*GCODE_SUFFIXES, *sorted(known)])}{hint}")
+    try:
+        reader: Reader = entry.load()
+    except (ImportError, AttributeError) as error:
+        raise OSError(f"{path}: the reader for {suffix} cannot be loaded ({entry.value}): {error}") from error
+    return reader(path, job=job, progress=progress)

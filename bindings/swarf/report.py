@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a simulation came to, as a dictionary for JSON and as a few lines for people."""
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from typing import Any, Optional
+
+from . import _native
+from .simulate import Result
+
+
+def _unique(names: tuple[str, ...]) -> list[str]:
+    """Names made different by a number where they repeat, so that they can be keys."""
+    taken: set[str] = set()
+    result = []
+    for name in names:
+        unique, number = name, 1
+        while unique in taken:
+            number += 1
+            unique = f"{name} ({number})"
+        taken.add(unique)
+        result.append(unique)
+    return result
+
+
+def make(result: Result, input_path: str, seconds_read: float = 0.0) -> dict[str, Any]:
+    """Report of a result; plain types only."""
+    job, simulation = result.job, result.simulation
+    names = _unique(job.program.operations)
+    removed = dict(zip(names, simulation.removed_by_operation))
+    box = result.stock.bounding_box()
+    seconds = {"read": seconds_read, **result.seconds}
+    for stage in ("stock", "cut", "mesh", "picture", "total"):
+        seconds.setdefault(stage, 0.0)
+    seconds["total"] += seconds_read
+    report: dict[str, Any] = {
+        "version": _native.version(),
+        "input": input_path,
+        "job": job.name,
+        "voxel_mm": result.stock.voxel,
+        "threads": _native.threads(),
+        "isa": _native.isa(),
+        "moves": len(job.program),
+        "machine_seconds": job.program.seconds(),
+        "operations": names,
+        "tools": [
+            {
+                "number": number,
+                "name": job.tool_names.get(number, ""),
+                "diameter_mm": 2 * cutter.radius(),
+                "flutes_mm": list(cutter.extent()),
+            }
+            for number, cutter in sorted(job.tools.items())
+        ],
+        "seconds": {stage: round(value, 6) for stage, value in seconds.items()},
+        "volume_mm3": {
+            "initial": simulation.volume_initial,
+            "removed": simulation.volume_initial - simulation.volume_final,
+            "final": simulation.volume_final,
+        },
+        "removed_mm3_by_operation": removed,
+        "memory_peak_mb": round(_native.memory_peak() / 1e6, 3),
+        "bounding_box": None if box is None else {"lo": list(box[0]), "hi": list(box[1])},
+        "mesh": _mesh(result.mesh),
+        "findings": [
+            {
+                "severity": finding.severity,
+                "operation": names[finding.operation] if 0 <= finding.operation < len(names) else None,
+                "move": finding.move,
+                "line": finding.line,
+                "tool": finding.tool,
+                "text": finding.text,
+            }
+            for finding in simulation.findings
+        ],
+        "notes": list(job.notes),
+    }
+    if result.comparison is not None:
+        fields = ("design_mm3", "stock_mm3", "excess_mm3", "gouge_mm3")
+        report["comparison"] = {name: getattr(result.comparison, name) for name in fields}
+    return report
+
+
+def _mesh(mesh: Optional[_native.Mesh]) -> Optional[dict[str, Any]]:
+    if mesh is None:
+        return None
+    return {
+        "vertices": mesh.vertex_count,
+        "triangles": mesh.triangle_count,
+        "closed": mesh.closed,
+        "volume_mm3": mesh.volume,
+    }
+
+
+def summary(report: dict[str, Any]) -> str:
+    """The report in a few lines of text."""
+    volume, seconds = report["volume_mm3"], report["seconds"]
+    lines = [
+        f"{report['input']}: {report['moves']} moves in {len(report['operations'])} operation(s), "
+        f"voxel {report['voxel_mm']:g} mm, {seconds['total']:.2f} s ({seconds['cut']:.2f} s cutting)",
+        f"volume {volume['initial']:.1f} mm3, removed {volume['removed']:.1f}, left {volume['final']:.1f}",
+    ]
+    lines += [f"  {name}: {removed:.1f} mm3" for name, removed in report["removed_mm3_by_operation"].items()]
+    if "comparison" in report:
+        comparison = report["comparison"]
+        lines.append(f"against the design: {comparison['excess_mm3']:.1f} mm3 too much, "
+                     f"{comparison['gouge_mm3']:.1f} mm3 missing")
+    return "\n".join(lines)
+
+
+def write(report: dict[str, Any], path: str) -> None:
+    """Write a report as JSON, beside the target and renamed, so that a failure loses nothing. OSError."""
+    folder = os.path.dirname(os.path.abspath(path))
+    handle, temporary = tempfile.mkstemp(dir=folder, prefix=".swarf-", suffix=".json")
+    try:
+        with os.fdopen(handle, "w", encoding="ascii") as stream:
+            json.dump(report, stream, indent=2, allow_nan=False)
+            stream.write("\n")
+        umask = os.umask(0)  # mkstemp makes private files; a report is an ordinary one
+        os.umask(umask)
+        os.chmod(temporary, 0o666 & ~umask)
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stock and tool as words of the command line."""
+from __future__ import annotations
+
+import math
+import os
+from typing import Any
+
+from ._native import Cutter, FormatError, Mesh
+from .simulate import MESH_SUFFIXES, STOCK_SUFFIXES
+
+STOCK_HELP = "box:X0,Y0,Z0,X1,Y1,Z1, cylinder:X,Y,Z,R,L (axis +Z) or cylinder:X,Y,Z,R,AX,AY,AZ, or a FILE"
+
+
+def _numbers(spec: str, text: str, counts: tuple[int, ...], wanted: str) -> list[float]:
+    try:
+        values = [float(word) for word in text.split(",")]
+    except ValueError as error:
+        raise ValueError(f"stock {spec!r}: {error}; wanted {wanted}") from None
+    if len(values) not in counts:
+        raise ValueError(f"stock {spec!r}: {len(values)} numbers; wanted {wanted}")
+    if not all(math.isfinite(value) for value in values):
+        raise ValueError(f"stock {spec!r}: a number is not finite; wanted {wanted}")
+    return values
+
+
+def stock(spec: str) -> dict[str, Any]:
+    """Stock of a Job from ``--stock``: a box, a cylinder, a mesh file or a .vdb file. ValueError, OSError, FormatError."""
+    kind, colon, rest = spec.partition(":")
+    if colon and kind == "box":
+        values = _numbers(spec, rest, (6,), "box:X0,Y0,Z0,X1,Y1,Z1")
+        if not all(lo < hi for lo, hi in zip(values[:3], values[3:])):
+            raise ValueError(f"stock {spec!r}: the second corner must lie above the first in X, Y and Z")
+        return {"kind": "box", "lo": tuple(values[:3]), "hi": tuple(values[3:])}
+    if colon and kind == "cylinder":
+        wanted = "cylinder:X,Y,Z,RADIUS,LENGTH or cylinder:X,Y,Z,RADIUS,AX,AY,AZ"
+        values = _numbers(spec, rest, (5, 7), wanted)
+        axis = (0.0, 0.0, values[4]) if len(values) == 5 else tuple(values[4:])
+        if not (values[3] > 0 and math.hypot(*axis) > 0):
+            raise ValueError(f"stock {spec!r}: radius and length must be above 0")
+        return {"kind": "cylinder", "base": tuple(values[:3]), "axis": axis, "radius": values[3]}
+    suffix = os.path.splitext(spec)[1].lower()
+    if suffix in MESH_SUFFIXES:
+        return {"kind": "mesh", "mesh": Mesh.read(spec)}
+    if suffix in STOCK_SUFFIXES:
+        return {"kind": "vdb", "path": spec}
+    raise ValueError(f"stock {spec!r}: wanted {STOCK_HELP} ({', '.join(MESH_SUFFIXES + STOCK_SUFFIXES)})")
+
+
+def tool(spec: str) -> tuple[int, Cutter, str]:
+    """Number, cutter and text of a ``--tool``, e.g. ``1=flat:d=3,l=18``. ValueError, FormatError."""
+    number, equals, text = spec.partition("=")
+    # isdecimal() is true of other scripts' digits too; int() reads them as well.
+    if not equals or not number.strip().isdecimal():
+        raise ValueError(f"tool {spec!r}: wanted NUMBER=SHAPE, e.g. 1=flat:d=3,l=18")
+    try:
+        return int(number), Cutter(text), text
+    except (FormatError, ValueError) as error:
+        raise type(error)(f"tool {int(number)}: {error}") from None
