@@ -3,8 +3,8 @@
  *
  * Files round centres and ends to some decimals, so the two radii seldom agree. The mismatch is taken up by
  * moving the centre along the chord until both are equal: the result is a true circle through both ends, which
- * strays from what was written by no more than the mismatch. Where that would move the centre too far (nearly
- * full circles with a mismatch) the centre stays and the radius changes evenly with the angle instead.
+ * strays from what was written by no more than twice the mismatch. Where that would move the far side of the circle
+ * further (more than half a turn between close ends) the centre stays and the radius changes evenly with the angle.
  */
 #include "program/arc.h"
 
@@ -73,7 +73,7 @@ swarf_status swarf_arc_make(const double start[3], const double end[3], const do
     arc.centre[n] = start[n];
     double angle = length <= same_point_mm ? two_pi : angle_between(u, v, ccw);
     if (fabs(r0 - r1) > same_radius_mm && fabs(shift) <= 0.5 * r0 &&
-        ((angle <= 0.5 * two_pi && turns == 1) || fabs(shift) <= tolerance)) {
+        ((angle <= 0.5 * two_pi && turns == 1) || fabs(shift) <= 2.0 * fabs(r0 - r1))) {
         arc.centre[a] += shift_a;
         arc.centre[b] += shift_b;
         u[0] -= shift_a, u[1] -= shift_b;

@@ -88,8 +88,8 @@ SWARF_API swarf_status swarf_program_add_line(swarf_program *program, swarf_move
 /** Add an arc or helix about `centre`; ccw turns counter-clockwise about the plane's normal; `turns` >= 1 counts
  *  the passes (1: up to a full circle; end == start gives a full one). The end's and start's radii may
  *  differ by at most max(0.002 mm, 0.1 %) and the arc ends exactly at `end`; else SWARF_ERROR_ARGUMENT.
- *  A mismatch is taken up by moving the centre along the chord until the radii agree; only in nearly full circles, where
- *  that would move it too far, the centre stays and the radius changes evenly with the angle. */
+ *  A mismatch is taken up by moving the centre along the chord until the radii agree; only in more than half a turn
+ *  between close ends, where that would move it too far, the centre stays and the radius changes with the angle. */
 SWARF_API swarf_status swarf_program_add_arc(swarf_program *program, const double end[3], const double centre[3],
                                              swarf_plane plane, int ccw, int turns, double feed_mm_min, uint32_t line);
 /** Add a dwell or a tool change at the current position. */
