@@ -2,10 +2,10 @@
 """The native module at work: JobData -> swarf objects, and the simulation of a job. Imports no FreeCAD, touches no
 document: runs in any thread."""
 
+import functools
 import importlib
 import os
 import sys
-import time
 from dataclasses import dataclass, field
 
 from . import FOLDER
@@ -18,27 +18,34 @@ HELP = ("Swarf's native module is missing or cannot be loaded (%s). Install it w
 BUILD_IN_PLACE = os.path.join("..", "build", "python")
 
 
+@functools.lru_cache(maxsize=1)
+def _find():
+    """(module, None) or (None, why not), looked for once: commands ask whenever the GUI is idle."""
+    built = os.path.normpath(os.path.join(os.path.dirname(os.path.dirname(os.path.realpath(FOLDER))), BUILD_IN_PLACE))
+    try:
+        return importlib.import_module("swarf"), None
+    except ImportError as error:
+        if built in sys.path or not os.path.isdir(os.path.join(built, "swarf")):
+            return None, str(error)
+    sys.path.append(built)
+    importlib.invalidate_caches()
+    try:
+        return importlib.import_module("swarf"), None
+    except ImportError as error:
+        return None, str(error)
+
+
 def load():
     """The module swarf. JobError says how to get it."""
-    try:
-        return importlib.import_module("swarf")
-    except ImportError as error:
-        root = os.path.dirname(os.path.dirname(FOLDER))
-        built = os.path.normpath(os.path.join(root, BUILD_IN_PLACE))
-        if os.path.isdir(os.path.join(built, "swarf")) and built not in sys.path:
-            sys.path.append(built)
-            importlib.invalidate_caches()
-            return load()
-        raise JobError(HELP % error) from error
+    module, error = _find()
+    if module is None:
+        raise JobError(HELP % error)
+    return module
 
 
 def is_available():
     """Whether the native module can be loaded."""
-    try:
-        load()
-    except JobError:
-        return False
-    return True
+    return _find()[0] is not None
 
 
 def _table(values, columns):
@@ -97,14 +104,6 @@ class Result:
     seconds: float = 0.0
 
 
-def stock_box(stock):
-    """(lo, hi) of a JobData's stock."""
-    if stock["kind"] == "box":
-        return stock["lo"], stock["hi"]
-    points = stock["mesh"][0]
-    return tuple(min(points[i::3]) for i in range(3)), tuple(max(points[i::3]) for i in range(3))
-
-
 def default_voxel(lo, hi):
     """A voxel size that shows a part of this size at once: its longest edge in 400, rounded to one digit, mm."""
     edge = max(b - a for a, b in zip(lo, hi)) / 400
@@ -116,45 +115,32 @@ def estimate(lo, hi, voxel_mm):
     return load().Stock.estimate(lo, hi, voxel_mm)
 
 
-def make_stock(stock, voxel_mm, progress=None):
-    """swarf.Stock of a JobData's stock."""
-    swarf = load()
-    if stock["kind"] == "box":
-        return swarf.Stock.box(stock["lo"], stock["hi"], voxel_mm)
-    return swarf.Stock.from_mesh(to_mesh(stock["mesh"]), voxel_mm, progress=progress)
+# Where each stage of swarf.simulate() begins and how much of the whole it is, about.
+STAGES = {"stock": (0.0, 0.1), "cut": (0.1, 0.5), "compare": (0.6, 0.2), "mesh": (0.8, 0.1), "write": (0.9, 0.1)}
 
 
 def simulate(data, voxel_mm, folder, progress=None):
     """Cut the stock of a JobData and write stock.vdb and stock.stl into a folder -> Result.
 
     progress: called with the fraction done, any thread; a true answer cancels (swarf.Cancelled). Raises JobError for
-    a tool that is impossible or cuts nothing, MemoryError before any work, swarf.Error.
+    a tool that is impossible, MemoryError before any work, ValueError, swarf.Error.
     """
     swarf = load()
-    begin = time.monotonic()
-
-    def stage(first, last):
-        return None if progress is None else lambda fraction: progress(first + (last - first) * fraction)
-
-    for number, (name, parts) in data.tools.items():
-        if not any(kind == "flutes" for kind, _ in parts) and data.moves.feeds_with(number):
-            raise JobError("the tool '%s' (T%d) has no flutes and cannot cut" % (name, number))
-    cutters = to_cutters(data.tools)
-    program = to_program(data.moves)
-    stock = make_stock(data.stock, voxel_mm, stage(0.0, 0.1))
-    outcome = stock.simulate(program, cutters, progress=stage(0.1, 0.6))
-    comparison = None
-    if data.design:
-        comparison = swarf.compare_volume(stock, to_mesh(data.design), progress=stage(0.6, 0.8))
     mesh_file, stock_file = os.path.join(folder, "stock.stl"), os.path.join(folder, "stock.vdb")
-    swarf.Mesh.from_stock(stock, progress=stage(0.8, 0.9)).write(mesh_file)
-    stock.write(stock_file, progress=stage(0.9, 1.0))
-    names = list(program.operations)
+
+    def report(stage, fraction):
+        begin, share = STAGES[stage]
+        return progress(begin + share * fraction)
+
+    done = swarf.simulate(to_job(data), voxel=voxel_mm, outputs=[mesh_file, stock_file],
+                          progress=report if progress else None)
+    outcome, comparison = done.simulation, done.comparison
+    names = data.moves.operations
     findings = ["%s: operation '%s', command %d: %s" % (
         item.severity, names[item.operation] if 0 <= item.operation < len(names) else "-", item.line, item.text)
         for item in outcome.findings]
     return Result(
-        stock_file, mesh_file, len(data.moves), names, list(outcome.removed_by_operation), outcome.volume_initial,
-        outcome.volume_final, comparison.excess_mm3 if comparison else None,
+        stock_file, mesh_file, len(data.moves), list(names), list(outcome.removed_by_operation),
+        outcome.volume_initial, outcome.volume_final, comparison.excess_mm3 if comparison else None,
         comparison.gouge_mm3 if comparison else None, findings,
-        sum(item.severity == "error" for item in outcome.findings), time.monotonic() - begin)
+        sum(item.severity == "error" for item in outcome.findings), done.seconds["total"])

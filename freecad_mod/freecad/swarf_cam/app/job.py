@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """FreeCAD's Path/CAM jobs, known by what they have: a job of 0.20 opened in 1.x has no Proxy any more."""
 
-from ..core import program
+from ..core import cutter, program
 from ..core.errors import JobError
 from ..core.job import JobData
 from ..core.placement import Placement
@@ -122,4 +122,8 @@ def read_job(job):
     table = program.build(operations)
     if not len(table):
         raise JobError("the operations of the job '%s' hold no moves: recompute it" % job.Label)
-    return JobData(job.Label, table, _tools(controllers), shapes.stock_of(job), shapes.design_of(job), notes)
+    described = _tools(controllers)
+    for number, (name, parts) in described.items():
+        if table.feeds_with(number) and not any(kind == cutter.FLUTES for kind, _ in parts):
+            raise JobError("the tool '%s' (T%d) has no flutes and cannot cut" % (name, number))
+    return JobData(job.Label, table, described, shapes.stock_of(job), shapes.design_of(job), notes)

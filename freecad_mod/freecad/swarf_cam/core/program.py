@@ -214,6 +214,11 @@ class Reader:
             self._world = self._placement.point(target)
             self.table.add_line(kind, self._world, 0.0 if kind == moves.RAPID else self._feed, self._line)
 
+    def _rapid(self, target):
+        """A rapid that a cycle makes only where it leads somewhere."""
+        if tuple(self._position) != tuple(target):
+            self._go(moves.RAPID, target)
+
     def _straight(self, kind, words):
         self._end_series()
         if kind != moves.RAPID:
@@ -312,8 +317,6 @@ class Reader:
         if self._relative:
             self._fail("a drilling cycle with G91 is not supported")
         self._take_feed(words)
-        if self._cycle_words.get("name") != name:
-            self._cycle_words = {"name": name}
         self._cycle_words.update((letter, words[letter]) for letter in "ZRPQ" if letter in words)
         for letter in "ZR":
             if letter not in self._cycle_words:
@@ -325,28 +328,26 @@ class Reader:
             self._position[2] = retract
         if self._series_z is None:
             self._series_z = self._position[2]
+        clear = max(self._series_z, retract) if self._return_to_initial else retract
         try:
-            steps = cycles.expand(name, z, retract, self._cycle_words.get("Q"), self._cycle_words.get("P", 0.0))
+            steps = list(cycles.expand(name, z, retract, clear, self._cycle_words.get("Q"),
+                                       self._cycle_words.get("P", 0.0)))
         except ValueError as error:
             self._fail(str(error))
-        x, y, height = self._position
-        if height < retract:
-            height = retract
-            self._go(moves.RAPID, (x, y, height))
-        self._go(moves.RAPID, (words.get("X", x), words.get("Y", y), height))
-        if any(map(math.isnan, self._position)):
+        x, y = words.get("X", self._position[0]), words.get("Y", self._position[1])
+        if math.isnan(x) or math.isnan(y):
             self._fail("needs the words X and Y: the place of the hole is not known")
-        x, y, _ = self._position
-        if height != retract:
-            self._go(moves.RAPID, (x, y, retract))
+        height = max(self._position[2], retract)
+        self._rapid((self._position[0], self._position[1], height))
+        self._rapid((x, y, height))
+        self._rapid((x, y, retract))
         for action, value in steps:
             if action == "dwell":
                 self.table.add_event(moves.DWELL, value, self._line)
+            elif action == "feed":
+                self._go(moves.FEED, (x, y, value))
             else:
-                self._go(moves.FEED if action == "feed" else moves.RAPID, (x, y, value))
-        up = max(self._series_z, retract) if self._return_to_initial else retract
-        if self._position[2] != up:
-            self._go(moves.RAPID, (x, y, up))
+                self._rapid((x, y, value))
 
 
 def build(operations, chord_tolerance_mm=CHORD_TOLERANCE_MM):

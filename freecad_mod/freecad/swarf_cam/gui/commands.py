@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The commands, thin: they find the job and open the panel."""
+
+import os
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from .. import ICONS, native
+from ..app import job as jobs
+from ..app import simulation
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+NAMES = ["Swarf_Simulate", "Swarf_Update"]
+
+
+def chosen_job():
+    """The job that is selected, or to which the selection belongs, or the document's only one; else None."""
+    document = FreeCAD.ActiveDocument
+    if document is None:
+        return None
+    for obj in Gui.Selection.getSelection():
+        if jobs.is_job(obj):
+            return obj
+        for parent in getattr(obj, "InListRecursive", ()):
+            if jobs.is_job(parent):
+                return parent
+    found = jobs.find_jobs(document)
+    return found[0] if len(found) == 1 else None
+
+
+def chosen_simulation():
+    """The simulation that is selected, or the document's only one; else None."""
+    document = FreeCAD.ActiveDocument
+    if document is None:
+        return None
+    for obj in Gui.Selection.getSelection():
+        if simulation.is_simulation(obj):
+            return obj
+    found = [obj for obj in document.Objects if simulation.is_simulation(obj)]
+    return found[0] if len(found) == 1 else None
+
+
+class Simulate:
+    """Simulate a job."""
+
+    def GetResources(self):
+        """Texts and icon."""
+        return {"Pixmap": os.path.join(ICONS, "swarf.svg"),
+                "MenuText": QT_TRANSLATE_NOOP("Swarf_Simulate", "Simulate milling"),
+                "ToolTip": QT_TRANSLATE_NOOP("Swarf_Simulate", "Cut the stock of the job with its tools and compare it "
+                                                               "with the model")}
+
+    def IsActive(self):
+        """Whenever there is a job to simulate and something to do it with."""
+        try:
+            return native.is_available() and not Gui.Control.activeDialog() and chosen_job() is not None
+        except (AttributeError, ReferenceError, RuntimeError):
+            return False
+
+    def Activated(self):
+        """Open the panel."""
+        from .panel import show_panel
+
+        show_panel(chosen_job())
+
+
+class Update:
+    """Simulate again."""
+
+    def GetResources(self):
+        """Texts and icon."""
+        return {"Pixmap": os.path.join(ICONS, "swarf-update.svg"),
+                "MenuText": QT_TRANSLATE_NOOP("Swarf_Update", "Update simulation"),
+                "ToolTip": QT_TRANSLATE_NOOP("Swarf_Update", "Simulate the job of the chosen simulation again")}
+
+    def IsActive(self):
+        """Whenever a simulation is chosen."""
+        try:
+            return native.is_available() and not Gui.Control.activeDialog() and chosen_simulation() is not None
+        except (AttributeError, ReferenceError, RuntimeError):
+            return False
+
+    def Activated(self):
+        """Open the panel on it and start."""
+        from .panel import show_panel
+
+        obj = chosen_simulation()
+        show_panel(obj.Job, obj, start=True)
+
+
+class CamEntries:
+    """Puts the commands beside FreeCAD's own simulators: Path_Simulator up to 0.21, CAM_Simulator from 1.0."""
+
+    SIMULATORS = ("Path_Simulator", "CAM_Simulator")
+
+    def modifyMenuBar(self):
+        """After the simulators in the menu."""
+        return [{"insert": name, "menuItem": simulator, "after": ""}
+                for simulator in self.SIMULATORS for name in reversed(NAMES)]
+
+    def modifyToolBars(self):
+        """After the simulators in the tool bar."""
+        return [{"insert": NAMES[0], "toolItem": simulator, "after": ""} for simulator in self.SIMULATORS]
+
+
+def register():
+    """Make the commands known; in the CAM workbench too, where FreeCAD can."""
+    Gui.addCommand("Swarf_Simulate", Simulate())
+    Gui.addCommand("Swarf_Update", Update())
+    if hasattr(Gui, "addWorkbenchManipulator"):
+        Gui.addWorkbenchManipulator(CamEntries())

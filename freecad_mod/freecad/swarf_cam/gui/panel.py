@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The task panel: voxel size with an estimate, then progress; the document changes only at the end, in one step."""
+
+import tempfile
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from .. import native
+from ..app import simulation
+from ..core.errors import JobError
+from .qt import QtWidgets, flags
+from .worker import Worker
+
+translate = FreeCAD.Qt.translate
+
+# Largest voxel size that the panel offers, and the digits it shows, mm.
+VOXEL_MAX_MM = 1000.0
+VOXEL_DECIMALS = 4
+
+
+def describe_estimate(job, voxel_mm):
+    """One sentence on what a voxel size will cost, or why it cannot be."""
+    try:
+        lo, hi = simulation.job_box(job)
+        needed = native.estimate(lo, hi, voxel_mm)
+    except (JobError, ValueError, MemoryError, OverflowError) as error:
+        return str(error)
+    cells = max(b - a for a, b in zip(lo, hi)) / voxel_mm
+    return translate("Swarf", "{0:.0f} voxels along the longest edge, up to {1:.0f} MB").format(cells, needed / 1e6)
+
+
+class SimulationPanel:
+    """Task panel for a new simulation of a job (obj None) or for an existing one."""
+
+    def __init__(self, job, obj=None):
+        self.job, self.obj = job, obj
+        self.document = job.Document
+        self.worker = self.prepared = self.folder = None
+        self.closed = False
+        self.form = QtWidgets.QWidget()
+        self.form.setObjectName("SwarfSimulationPanel")
+        self.form.setWindowTitle(translate("Swarf", "Milling simulation"))
+        layout = QtWidgets.QFormLayout(self.form)
+        layout.addRow(translate("Swarf", "Job"), QtWidgets.QLabel(job.Label))
+        self.voxel = QtWidgets.QDoubleSpinBox()
+        self.voxel.setDecimals(VOXEL_DECIMALS)
+        self.voxel.setRange(10.0 ** -VOXEL_DECIMALS, VOXEL_MAX_MM)
+        self.voxel.setSingleStep(0.01)
+        self.voxel.setSuffix(" mm")
+        self.voxel.setValue(obj.VoxelSize.Value if obj else native.default_voxel(*simulation.job_box(job)))
+        layout.addRow(translate("Swarf", "Voxel size"), self.voxel)
+        self.estimate = QtWidgets.QLabel()
+        self.estimate.setWordWrap(True)
+        layout.addRow(self.estimate)
+        self.bar = QtWidgets.QProgressBar()
+        self.bar.setRange(0, 1000)
+        self.bar.hide()
+        layout.addRow(self.bar)
+        self.message = QtWidgets.QLabel()
+        self.message.setWordWrap(True)
+        layout.addRow(self.message)
+        self.voxel.valueChanged.connect(self.show_estimate)
+        self.show_estimate()
+
+    def show_estimate(self, *_):
+        """What the chosen size will cost."""
+        self.estimate.setText(describe_estimate(self.job, self.voxel.value()))
+
+    def getStandardButtons(self):
+        """OK and Cancel."""
+        return flags(QtWidgets.QDialogButtonBox.Ok, QtWidgets.QDialogButtonBox.Cancel)
+
+    def accept(self):
+        """Start; the panel stays until the end."""
+        if self.worker is None:
+            self.start()
+        return False
+
+    def reject(self):
+        """Cancel the work, or close the panel when there is none."""
+        if self.worker is not None:
+            self.worker.cancel()
+            self.message.setText(translate("Swarf", "Cancelling ..."))
+            return False
+        self.close()
+        return True
+
+    def start(self):
+        """Read the job here, then simulate in a thread."""
+        try:
+            self.prepared = simulation.Prepared(self.job, self.voxel.value())
+        except JobError as error:
+            self.show_error(error)
+            return
+        self.folder = tempfile.TemporaryDirectory(prefix="swarf-")
+        self.voxel.setEnabled(False)
+        self.message.setText("")
+        self.bar.setValue(0)
+        self.bar.show()
+        prepared, folder = self.prepared, self.folder.name
+        self.worker = Worker(lambda progress: prepared.run(folder, progress), self.on_progress, self.on_end)
+        self.worker.start()
+
+    def on_progress(self, fraction):
+        """Fraction done."""
+        self.bar.setValue(int(1000 * fraction))
+
+    def on_end(self, result, error):
+        """The thread is through, with a result or an error."""
+        cancelled = self.worker.cancelled
+        self.worker = None
+        self.voxel.setEnabled(True)
+        self.bar.hide()
+        try:
+            if error is not None and cancelled:
+                self.message.setText(translate("Swarf", "Cancelled; nothing was changed."))
+            elif error is not None:
+                self.show_error(error)
+            else:
+                self.finish(result)
+        finally:
+            self.folder.cleanup()
+            self.folder = None
+
+    def finish(self, result):
+        """Put the result into the document, in one transaction."""
+        try:
+            self.document.Name, self.job.Name
+        except ReferenceError:
+            self.show_error(translate("Swarf", "The job was deleted meanwhile; its simulation is discarded."))
+            return
+        self.document.openTransaction("Simulate")
+        try:
+            obj = self.obj or simulation.make(self.job, self.prepared.voxel_mm)
+            obj.VoxelSize = self.prepared.voxel_mm
+            simulation.store(obj, self.prepared, result)
+        except BaseException as error:
+            self.document.abortTransaction()
+            self.show_error(error)
+            raise
+        self.document.commitTransaction()
+        FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: {0}: {1:.1f} mm^3 removed in {2:.1f} s\n").format(
+            obj.Label, result.volume_initial - result.volume_final, result.seconds))
+        self.close()
+
+    def show_error(self, error):
+        """In the panel, where the user looks, and in the report view, where it stays."""
+        text = str(error) or type(error).__name__
+        self.message.setText(text)
+        FreeCAD.Console.PrintError("Swarf: %s\n" % text)
+
+    def close(self):
+        """Close the panel once."""
+        if not self.closed:
+            self.closed = True
+            Gui.Control.closeDialog()
+
+
+def show_panel(job, obj=None, start=False):
+    """Open the panel; start: begin at once. Messages go to the report view when that is impossible."""
+    if Gui.Control.activeDialog():
+        FreeCAD.Console.PrintError(translate("Swarf", "Swarf: close the open task first\n"))
+        return None
+    try:
+        native.load()
+        if job is None:
+            raise JobError(translate("Swarf", "the simulation has no job: it was deleted, or never chosen"))
+        panel = SimulationPanel(job, obj)
+    except JobError as error:
+        FreeCAD.Console.PrintError("Swarf: %s\n" % error)
+        return None
+    Gui.Control.showDialog(panel)
+    if start:
+        panel.start()
+    return panel
