@@ -67,8 +67,7 @@ swarf_status swarf_machine_arc(swarf_machine *machine, swarf_block *block, const
     if (swarf_block_has(block, 'R')) {
         const swarf_word *radius = swarf_block_take(block, 'R');
         if (offsets) return swarf_gcode_fail(place, block, radius, "and a centre by I, J, K; an arc takes one of them");
-        if (!in_plane)
-            return swarf_gcode_fail(place, block, radius, "needs an end: %c or %c", first, second);
+        if (!in_plane) return swarf_gcode_fail(place, block, radius, "needs an end: %c or %c", first, second);
         double r = 0.0, c[2] = {0.0, 0.0};
         SWARF_TRY(swarf_machine_length(machine, block, radius, &r));
         if (r == 0.0) return swarf_gcode_fail(place, block, radius, "radius must not be 0");

@@ -34,8 +34,10 @@ static swarf_status remember(swarf_machine *machine, swarf_block *block, const s
     const int taken = letter == 'P' && (block->used & SWARF_LETTER('P')); /* by G4 or G64 */
     if (swarf_block_has(block, letter) && !taken) {
         const swarf_word *given = swarf_block_take(block, letter);
-        if (letter == 'P') *value = given->value;
-        else SWARF_TRY(swarf_machine_length(machine, block, given, value));
+        if (letter == 'P')
+            *value = given->value;
+        else
+            SWARF_TRY(swarf_machine_length(machine, block, given, value));
         if (letter == 'Q' && !(*value > 0.0))
             return swarf_gcode_fail(&machine->place, block, given, "must be positive: the depth of a peck");
         if (letter == 'P' && !(*value >= 0.0))
@@ -146,9 +148,8 @@ swarf_status swarf_machine_drill(swarf_machine *machine, swarf_block *block, con
     }
     h.clear = !machine->retract_to_r && cycle->initial > h.r ? cycle->initial : h.r;
     if (h.z > h.r)
-        return swarf_gcode_fail(place, block, word,
-                                "cycle ends at %.6g mm, above R at %.6g mm; R must be above %c", h.z, h.r,
-                                depth_letter);
+        return swarf_gcode_fail(place, block, word, "cycle ends at %.6g mm, above R at %.6g mm; R must be above %c",
+                                h.z, h.r, depth_letter);
     if (pecks && (h.r - h.z) / cycle->q * repeats > PECKS_MAX)
         return swarf_gcode_fail(place, block, word, "makes more than %d pecks of Q %.6g mm", PECKS_MAX, cycle->q);
 

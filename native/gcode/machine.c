@@ -96,8 +96,8 @@ swarf_status swarf_machine_turn(swarf_machine *machine, const swarf_block *block
         return swarf_machine_go(machine, block, word, SWARF_MOVE_POSITION, end);
     SWARF_TRY(check_end(machine, block, word, end));
     SWARF_TRY(settle(machine));
-    SWARF_TRY(swarf_program_push(machine->program, SWARF_MOVE_FEED, end, arc, machine->feed_mm_min,
-                                 machine->place.line));
+    SWARF_TRY(
+        swarf_program_push(machine->program, SWARF_MOVE_FEED, end, arc, machine->feed_mm_min, machine->place.line));
     for (int k = 0; k < 3; k++) machine->position[k] = end[k];
     return SWARF_OK;
 }
@@ -125,14 +125,16 @@ static swarf_status change_tool(swarf_machine *machine, swarf_block *block, cons
     if (machine->selected < 0)
         return swarf_gcode_fail(&machine->place, block, word, "has no tool to load; write T and its number first");
     const size_t tool = (size_t)machine->selected, room = machine->tool_room;
-    SWARF_TRY(swarf_array_reserve((void **)&machine->tool_uses, &machine->tool_room, tool + 1,
-                                  sizeof *machine->tool_uses));
+    SWARF_TRY(
+        swarf_array_reserve((void **)&machine->tool_uses, &machine->tool_room, tool + 1, sizeof *machine->tool_uses));
     if (machine->tool_room > room)
         memset(machine->tool_uses + room, 0, (machine->tool_room - room) * sizeof *machine->tool_uses);
     const uint32_t use = ++machine->tool_uses[tool];
     char name[40];
-    if (use == 1) snprintf(name, sizeof name, "T%d", machine->selected);
-    else snprintf(name, sizeof name, "T%d (%u)", machine->selected, use);
+    if (use == 1)
+        snprintf(name, sizeof name, "T%d", machine->selected);
+    else
+        snprintf(name, sizeof name, "T%d (%u)", machine->selected, use);
     SWARF_TRY(swarf_program_add_operation(machine->program, name));
     machine->section.operation = (int32_t)swarf_program_operation_count(machine->program) - 1;
     machine->section.tool = machine->selected;
@@ -190,9 +192,7 @@ static swarf_status run_modes(swarf_machine *machine, swarf_block *block)
 {
     const swarf_word *word = swarf_block_group(block, SWARF_GROUP_PLANE);
     if (word) {
-        machine->plane = word->value == 170.0   ? SWARF_PLANE_XY
-                         : word->value == 180.0 ? SWARF_PLANE_ZX
-                                                : SWARF_PLANE_YZ;
+        machine->plane = word->value == 170.0 ? SWARF_PLANE_XY : word->value == 180.0 ? SWARF_PLANE_ZX : SWARF_PLANE_YZ;
         machine->cycle.active = 0; /* its R and Z lay along another axis */
     }
     word = swarf_block_group(block, SWARF_GROUP_LENGTH);
@@ -285,7 +285,9 @@ static swarf_status check_unused(const swarf_machine *machine, const swarf_block
     const char *home = "G0 to G3 and cycles";
     switch (letter) {
     case 'H': home = "G43"; break;
-    case 'I': case 'J': case 'K': home = "G2 and G3, by the plane's two letters"; break;
+    case 'I':
+    case 'J':
+    case 'K': home = "G2 and G3, by the plane's two letters"; break;
     case 'L': home = "cycles"; break;
     case 'P': home = "G4, G82 and G89, turns of G2 and G3, and G64"; break;
     case 'Q': home = "G73, G83 and G64"; break;

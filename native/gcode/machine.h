@@ -14,11 +14,11 @@ enum { SWARF_MOTION_NONE = 800 };
 
 /** What drilling cycles remember from line to line, until a line leaves them. */
 typedef struct swarf_cycle {
-    int active;       /**< in a series of cycles */
-    uint32_t known;   /**< letters Z R Q P given in this series */
-    double z, r, q;   /**< as written, mm */
-    double seconds;   /**< P */
-    double initial;   /**< height the series began at, for G98; NAN if that was unknown */
+    int active;     /**< in a series of cycles */
+    uint32_t known; /**< letters Z R Q P given in this series */
+    double z, r, q; /**< as written, mm */
+    double seconds; /**< P */
+    double initial; /**< height the series began at, for G98; NAN if that was unknown */
 } swarf_cycle;
 
 typedef struct swarf_machine {
@@ -28,11 +28,11 @@ typedef struct swarf_machine {
     double unit_mm;     /**< 1 or 25.4 */
     int motion;
     swarf_plane plane;
-    int incremental;    /**< G91 */
-    int arc_absolute;   /**< G90.1 */
-    int retract_to_r;   /**< G99 */
+    int incremental;  /**< G91 */
+    int arc_absolute; /**< G90.1 */
+    int retract_to_r; /**< G99 */
     double feed_mm_min;
-    int selected;       /**< by T, -1 for none */
+    int selected; /**< by T, -1 for none */
     swarf_section section;
     int section_changed;
     swarf_cycle cycle;

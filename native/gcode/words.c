@@ -82,8 +82,10 @@ static int read_number(const char **cursor, const char *end, double *out)
     if (!any) return 0;
     double value = (double)digits;
     if (digits != 0) { /* zero keeps being zero however many zeros follow the point */
-        if (scale > last_power) value = HUGE_VAL;
-        else if (scale > 0) value *= powers[scale];
+        if (scale > last_power)
+            value = HUGE_VAL;
+        else if (scale > 0)
+            value *= powers[scale];
         for (; scale < -last_power; scale += last_power) value /= powers[last_power];
         if (scale < 0) value /= powers[-scale];
     }
@@ -97,39 +99,82 @@ static int group_of_g(int code, const char **reason)
 {
     switch (code) {
     case 40: return SWARF_GROUP_DWELL;
-    case 0: case 10: case 20: case 30: case 730: case 810: case 820: case 830: case 850: case 890:
-        return SWARF_GROUP_MOTION;
+    case 0:
+    case 10:
+    case 20:
+    case 30:
+    case 730:
+    case 810:
+    case 820:
+    case 830:
+    case 850:
+    case 890: return SWARF_GROUP_MOTION;
     case 800: return SWARF_GROUP_CANCEL;
-    case 170: case 180: case 190: return SWARF_GROUP_PLANE;
-    case 900: case 910: return SWARF_GROUP_DISTANCE;
-    case 901: case 911: return SWARF_GROUP_ARC_CENTRE;
+    case 170:
+    case 180:
+    case 190: return SWARF_GROUP_PLANE;
+    case 900:
+    case 910: return SWARF_GROUP_DISTANCE;
+    case 901:
+    case 911: return SWARF_GROUP_ARC_CENTRE;
     case 940: return SWARF_GROUP_FEED_MODE;
-    case 200: case 210: return SWARF_GROUP_UNITS;
+    case 200:
+    case 210: return SWARF_GROUP_UNITS;
     case 400: return SWARF_GROUP_RADIUS;
-    case 430: case 490: return SWARF_GROUP_LENGTH;
-    case 980: case 990: return SWARF_GROUP_RETRACT;
+    case 430:
+    case 490: return SWARF_GROUP_LENGTH;
+    case 980:
+    case 990: return SWARF_GROUP_RETRACT;
     case 540: return SWARF_GROUP_OFFSET;
-    case 610: case 611: case 640: return SWARF_GROUP_PATH;
-    case 50: case 51: *reason = "splines are not supported; post with lines and arcs"; break;
+    case 610:
+    case 611:
+    case 640: return SWARF_GROUP_PATH;
+    case 50:
+    case 51: *reason = "splines are not supported; post with lines and arcs"; break;
     case 100: *reason = "setting tool and offset tables is not supported"; break;
-    case 280: case 281: case 300: case 301:
-        *reason = "reference positions are not known here; write the retract as a G0 move"; break;
-    case 330: case 760: case 840: case 740:
-        *reason = "threading and tapping are not supported; G81 or G85 cut the same hole"; break;
-    case 382: case 383: case 384: case 385: *reason = "probing is not supported"; break;
-    case 410: case 411: case 420: case 421:
-        *reason = "cutter compensation is not supported; post the tool centre's path (G40)"; break;
-    case 431: case 432: *reason = "offsets are not supported; only G43 of the loaded tool and G49 are"; break;
-    case 520: case 921: case 922: case 923: case 920:
-        *reason = "shifting the origin is not supported; write coordinates of G54"; break;
+    case 280:
+    case 281:
+    case 300:
+    case 301: *reason = "reference positions are not known here; write the retract as a G0 move"; break;
+    case 330:
+    case 760:
+    case 840:
+    case 740: *reason = "threading and tapping are not supported; G81 or G85 cut the same hole"; break;
+    case 382:
+    case 383:
+    case 384:
+    case 385: *reason = "probing is not supported"; break;
+    case 410:
+    case 411:
+    case 420:
+    case 421: *reason = "cutter compensation is not supported; post the tool centre's path (G40)"; break;
+    case 431:
+    case 432: *reason = "offsets are not supported; only G43 of the loaded tool and G49 are"; break;
+    case 520:
+    case 921:
+    case 922:
+    case 923:
+    case 920: *reason = "shifting the origin is not supported; write coordinates of G54"; break;
     case 530: *reason = "machine coordinates are not known here; write coordinates of G54"; break;
-    case 550: case 560: case 570: case 580: case 590: case 591: case 592: case 593:
-        *reason = "only work offset G54 is supported; the others' places are not known here"; break;
-    case 860: case 870: case 880: *reason = "this boring cycle is not supported; G85 and G89 are"; break;
-    case 930: case 950: *reason = "only feed per minute (G94) is supported"; break;
-    case 960: case 970: *reason = "constant surface speed is not supported; give rpm by S"; break;
-    default: *reason = "is not supported; G0 to G4, G17 to G21, G40, G43, G49, G54, G61, G64, G73, G80 to G83, G85, "
-                       "G89 to G91, G94, G98 and G99 are"; break;
+    case 550:
+    case 560:
+    case 570:
+    case 580:
+    case 590:
+    case 591:
+    case 592:
+    case 593: *reason = "only work offset G54 is supported; the others' places are not known here"; break;
+    case 860:
+    case 870:
+    case 880: *reason = "this boring cycle is not supported; G85 and G89 are"; break;
+    case 930:
+    case 950: *reason = "only feed per minute (G94) is supported"; break;
+    case 960:
+    case 970: *reason = "constant surface speed is not supported; give rpm by S"; break;
+    default:
+        *reason = "is not supported; G0 to G4, G17 to G21, G40, G43, G49, G54, G61, G64, G73, G80 to G83, G85, "
+                  "G89 to G91, G94, G98 and G99 are";
+        break;
     }
     return -1;
 }
@@ -137,8 +182,13 @@ static int group_of_g(int code, const char **reason)
 static int group_of_m(int code)
 {
     switch (code) {
-    case 0: case 1: case 2: case 30: return SWARF_GROUP_STOP;
-    case 3: case 4: case 5: return SWARF_GROUP_SPINDLE;
+    case 0:
+    case 1:
+    case 2:
+    case 30: return SWARF_GROUP_STOP;
+    case 3:
+    case 4:
+    case 5: return SWARF_GROUP_SPINDLE;
     case 6: return SWARF_GROUP_TOOL;
     case 7: return SWARF_GROUP_MIST;
     case 8: return SWARF_GROUP_FLOOD;
@@ -170,8 +220,12 @@ static swarf_status add_code(const swarf_place *place, swarf_block *block, int i
 static const char *letter_reason(char letter)
 {
     switch (letter) {
-    case 'A': case 'B': case 'C': return "rotary axes are not supported";
-    case 'U': case 'V': case 'W': return "secondary axes are not supported";
+    case 'A':
+    case 'B':
+    case 'C': return "rotary axes are not supported";
+    case 'U':
+    case 'V':
+    case 'W': return "secondary axes are not supported";
     case 'D': return "cutter compensation is not supported";
     case 'E': return "is no word, and numbers take no exponent; write the number out";
     case 'O': return "program numbers and subroutines are not supported";
@@ -197,8 +251,11 @@ static swarf_status fail_character(const swarf_place *place, const swarf_block *
 {
     const swarf_word word = {0.0, at, 1};
     switch (*at) {
-    case '#': case '[': case ']': case '=': case '<':
-        return swarf_gcode_fail(place, block, &word, "parameters and expressions are not supported");
+    case '#':
+    case '[':
+    case ']':
+    case '=':
+    case '<': return swarf_gcode_fail(place, block, &word, "parameters and expressions are not supported");
     case ')': return swarf_gcode_fail(place, block, &word, "closes no comment");
     case '%': return swarf_gcode_fail(place, block, &word, "must stand alone in its line");
     default: break;

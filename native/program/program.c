@@ -90,8 +90,8 @@ swarf_status swarf_program_add_operation(swarf_program *program, const char *nam
 {
     SWARF_REQUIRE(program && name, "program: operation without a name");
     if (program->operation_count >= INT32_MAX) return swarf_fail(SWARF_ERROR_MEMORY, "program: too many operations");
-    SWARF_TRY(swarf_array_reserve((void **)&program->operations, &program->operation_room,
-                                  program->operation_count + 1, sizeof *program->operations));
+    SWARF_TRY(swarf_array_reserve((void **)&program->operations, &program->operation_room, program->operation_count + 1,
+                                  sizeof *program->operations));
     const size_t size = strlen(name) + 1;
     char *copy = malloc(size);
     if (!copy) return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
@@ -137,8 +137,7 @@ static size_t section_slot(const swarf_program *program, const swarf_section *se
 {
     const size_t mask = program->slot_count - 1;
     size_t slot = (size_t)section_hash(section) & mask;
-    while (program->slots[slot] &&
-           memcmp(&program->sections[program->slots[slot] - 1], section, sizeof *section) != 0)
+    while (program->slots[slot] && memcmp(&program->sections[program->slots[slot] - 1], section, sizeof *section) != 0)
         slot = (slot + 1) & mask;
     return slot;
 }
@@ -165,8 +164,8 @@ static swarf_status settle_section(swarf_program *program)
     if (!program->slots[slot]) {
         if (program->section_count >= section_limit)
             return swarf_fail(SWARF_ERROR_MEMORY, "program: too many sections");
-        SWARF_TRY(swarf_array_reserve((void **)&program->sections, &program->section_room,
-                                      program->section_count + 1, sizeof *program->sections));
+        SWARF_TRY(swarf_array_reserve((void **)&program->sections, &program->section_room, program->section_count + 1,
+                                      sizeof *program->sections));
         program->sections[program->section_count++] = program->current;
         program->slots[slot] = (uint32_t)program->section_count;
     }
@@ -185,8 +184,8 @@ static swarf_status reserve_moves(swarf_program *program)
                                sizeof *program->moves);
 }
 
-swarf_status swarf_program_push(swarf_program *program, swarf_move_kind kind, const double end[3],
-                                const swarf_arc *arc, double value, uint32_t line)
+swarf_status swarf_program_push(swarf_program *program, swarf_move_kind kind, const double end[3], const swarf_arc *arc,
+                                double value, uint32_t line)
 {
     if (program->current_stale) SWARF_TRY(settle_section(program));
     SWARF_TRY(reserve_moves(program));
@@ -305,8 +304,7 @@ const char *swarf_program_operation_name(const swarf_program *program, size_t in
 void swarf_program_move_start(const swarf_program *program, size_t index, double out[3])
 {
     const int known = program && index < program->move_count;
-    for (int k = 0; k < 3; k++)
-        out[k] = !known ? NAN : index ? program->moves[index - 1].end[k] : program->start[k];
+    for (int k = 0; k < 3; k++) out[k] = !known ? NAN : index ? program->moves[index - 1].end[k] : program->start[k];
 }
 
 swarf_status swarf_program_path(const swarf_program *program, size_t index, swarf_path *out)
@@ -322,8 +320,7 @@ swarf_status swarf_program_path(const swarf_program *program, size_t index, swar
     path.is_arc = move->arc >= 0;
     if (path.is_arc) path.arc = program->arcs[move->arc];
     const int still = path.start[0] == path.end[0] && path.start[1] == path.end[1] && path.start[2] == path.end[2];
-    path.has_motion = kind == SWARF_MOVE_FEED ||
-                      ((kind == SWARF_MOVE_RAPID || kind == SWARF_MOVE_PROBE) && !still);
+    path.has_motion = kind == SWARF_MOVE_FEED || ((kind == SWARF_MOVE_RAPID || kind == SWARF_MOVE_PROBE) && !still);
     *out = path;
     return SWARF_OK;
 }

@@ -6,7 +6,7 @@
 #include "program/arc.h"
 
 /** Append a move that the caller has checked; `arc` (may be NULL) is copied; `value` is the feed or the seconds. */
-swarf_status swarf_program_push(swarf_program *program, swarf_move_kind kind, const double end[3],
-                                const swarf_arc *arc, double value, uint32_t line);
+swarf_status swarf_program_push(swarf_program *program, swarf_move_kind kind, const double end[3], const swarf_arc *arc,
+                                double value, uint32_t line);
 
 #endif

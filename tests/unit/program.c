@@ -50,7 +50,7 @@ static void test_lines(void)
     CHECK_OK(swarf_program_add_event(program, SWARF_MOVE_TOOL_CHANGE, 0, 6));
     CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_PROBE, (double[3]){3, 4, -3}, 60, 7));
     CHECK(swarf_program_move_count(program) == 7);
-    static const swarf_move_kind kinds[] = {SWARF_MOVE_RAPID, SWARF_MOVE_FEED,  SWARF_MOVE_FEED, SWARF_MOVE_RAPID,
+    static const swarf_move_kind kinds[] = {SWARF_MOVE_RAPID, SWARF_MOVE_FEED,        SWARF_MOVE_FEED, SWARF_MOVE_RAPID,
                                             SWARF_MOVE_DWELL, SWARF_MOVE_TOOL_CHANGE, SWARF_MOVE_PROBE};
     static const int motion[] = {1, 1, 1, 0, 0, 0, 1};
     const swarf_move *moves = swarf_program_moves(program);
@@ -226,7 +226,8 @@ static void test_arcs_random(void)
             const double off = hypot(p[axes[0]] - centre[axes[0]], p[axes[1]] - centre[axes[1]]) - radius;
             CHECK_NEAR(off, 0, 4 * step);
             CHECK_NEAR(hypot(p[axes[0]] - centre[axes[0]] - radius * cos(meant),
-                             p[axes[1]] - centre[axes[1]] - radius * sin(meant)), 0, 8 * step + 0.02 * radius);
+                             p[axes[1]] - centre[axes[1]] - radius * sin(meant)),
+                       0, 8 * step + 0.02 * radius);
         }
         /* up to half a turn, a true circle through both ends */
         const double r0 = hypot(start[axes[0]] - path.arc.centre[axes[0]], start[axes[1]] - path.arc.centre[axes[1]]);

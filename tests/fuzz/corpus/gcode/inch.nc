@@ -1,0 +1,7 @@
+G20
+G0 X1 Y1 Z1
+G18 G2 X2 Z1 I.5 K0
+G19 G3 Y2 Z1 J.5
+G17 G90.1 G3 X1 Y1 I2 J1
+/G1 X+1. Y-.5 Z 1 . 5 (note) ; rest
+M2
