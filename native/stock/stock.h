@@ -10,7 +10,9 @@
 #include "stock/vdb_tree.h"
 #include "swarf/stock.h"
 
-
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 struct swarf_stock {
     swarf_tree *tree;
@@ -49,4 +51,7 @@ swarf_status swarf_stock_leaves(const swarf_stock *stock, swarf_leaf **out, size
 /** Value at a voxel of the layout, in mm; outside the layout +background. */
 float swarf_stock_value(const swarf_stock *stock, const int32_t ijk[3]);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "mesh/text.h"
+
+#include "base/status.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static int is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+swarf_word swarf_text_word(swarf_text *text)
+{
+    while (text->at < text->end && is_blank(*text->at)) text->at++;
+    swarf_word word = {text->at, 0};
+    while (text->at < text->end && !is_blank(*text->at) && *text->at != '\n') text->at++;
+    word.length = (size_t)(text->at - word.at);
+    return word;
+}
+
+int swarf_text_next_line(swarf_text *text)
+{
+    const char *found = memchr(text->at, '\n', (size_t)(text->end - text->at));
+    if (!found) {
+        text->at = text->end;
+        return 0;
+    }
+    text->at = found + 1;
+    text->line++;
+    return 1;
+}
+
+swarf_word swarf_text_word_anywhere(swarf_text *text)
+{
+    swarf_word word = swarf_text_word(text);
+    while (word.length == 0 && swarf_text_next_line(text)) word = swarf_text_word(text);
+    return word;
+}
+
+int swarf_word_is(swarf_word word, const char *wanted)
+{
+    return strlen(wanted) == word.length && memcmp(word.at, wanted, word.length) == 0;
+}
+
+int swarf_word_number(swarf_word word, double *out)
+{
+    const char *p = word.at, *end = p + word.length;
+    int negative = 0, digits = 0, scale = 0;
+    uint64_t mantissa = 0;
+    if (p < end && (*p == '-' || *p == '+')) negative = *p++ == '-';
+    for (int after_point = 0; p < end; p++) {
+        if (*p == '.' && !after_point) {
+            after_point = 1;
+        } else if (*p >= '0' && *p <= '9') {
+            digits++;
+            /* 18 digits are more than a double holds; later ones only move the point */
+            if (mantissa < UINT64_C(100000000000000000)) {
+                mantissa = 10 * mantissa + (uint64_t)(*p - '0');
+                scale -= after_point;
+            } else {
+                scale += !after_point;
+            }
+        } else {
+            break;
+        }
+    }
+    if (!digits) return 0;
+    if (p < end && (*p == 'e' || *p == 'E')) {
+        int minus = 0, exponent = 0;
+        if (++p < end && (*p == '-' || *p == '+')) minus = *p++ == '-';
+        if (p == end) return 0;
+        for (; p < end && *p >= '0' && *p <= '9'; p++)
+            if (exponent < 10000) exponent = 10 * exponent + (*p - '0');
+        scale += minus ? -exponent : exponent;
+    }
+    if (p != end) return 0;
+    double value = (double)mantissa;
+    if (mantissa == 0) scale = 0;
+    /* in steps that neither overflow nor lose a small mantissa */
+    for (; scale > 22; scale -= 22) {
+        if (value > FLT_MAX) return 0;
+        value *= 1e22;
+    }
+    for (; scale < -22 && value > 0; scale += 22) value /= 1e22;
+    static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                   1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    if (value > 0) value = scale < 0 ? value / power[-scale] : value * power[scale];
+    if (value > FLT_MAX) return 0;
+    *out = negative ? -value : value;
+    return 1;
+}
+
+int swarf_word_integer(swarf_word word, int64_t *out)
+{
+    const char *p = word.at, *end = p + word.length;
+    int negative = 0;
+    int64_t value = 0;
+    if (p < end && (*p == '-' || *p == '+')) negative = *p++ == '-';
+    if (p == end) return 0;
+    for (; p < end; p++) {
+        if (*p < '0' || *p > '9' || value > (INT64_C(1) << 53) / 10) return 0;
+        value = 10 * value + (*p - '0');
+    }
+    *out = negative ? -value : value;
+    return 1;
+}
+
+swarf_status swarf_text_fail(const swarf_text *text, swarf_word word, const char *wanted)
+{
+    if (word.length == 0)
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: %s expected, but the %s ends", text->name, text->line, wanted,
+                          text->at >= text->end ? "file" : "line");
+    const int shown = word.length < 40 ? (int)word.length : 40;
+    return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: '%.*s': %s expected", text->name, text->line, shown, word.at, wanted);
+}

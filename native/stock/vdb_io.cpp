@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* .vdb files, through a stream buffer of our own: it counts bytes for the progress, stops when the caller wants to,
+ * and fails at the first byte that is not there, so that a file cut short is an error and never a wait or a crash. */
+#include "base/arena.hpp"
+#include "base/file.h"
+#include "base/guard.hpp"
+#include "stock/stock.h"
+#include "stock/vdb_tree.hpp"
+
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/Stream.h>
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/FastSweeping.h>
+#include <openvdb/tools/Prune.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <sstream>
+#include <streambuf>
+#include <sys/stat.h>
+
+namespace {
+
+/* A stdio file as a stream buffer (stdio buffers already). `expected` bytes are the whole of the progress. */
+class file_buffer : public std::streambuf {
+public:
+    file_buffer(FILE *file, double expected, swarf_interrupter &interrupter)
+        : file_(file), expected_(expected), interrupter_(interrupter)
+    {
+    }
+
+protected:
+    std::streamsize xsgetn(char *to, std::streamsize count) override
+    {
+        return moved(std::fread(to, 1, static_cast<size_t>(count), file_));
+    }
+    std::streamsize xsputn(const char *from, std::streamsize count) override
+    {
+        return moved(std::fwrite(from, 1, static_cast<size_t>(count), file_));
+    }
+    int_type uflow() override { return std::fgetc(file_); }
+    int_type underflow() override { return std::ungetc(std::fgetc(file_), file_); }
+    int_type overflow(int_type c) override { return std::fputc(c, file_); }
+    int sync() override { return 0; }
+    pos_type seekoff(off_type offset, std::ios_base::seekdir way, std::ios_base::openmode) override
+    {
+        const int whence = way == std::ios_base::beg ? SEEK_SET : way == std::ios_base::cur ? SEEK_CUR : SEEK_END;
+        if (offset == 0 && way == std::ios_base::cur) return ftello(file_);
+        return fseeko(file_, offset, whence) == 0 ? pos_type(ftello(file_)) : pos_type(off_type(-1));
+    }
+    pos_type seekpos(pos_type position, std::ios_base::openmode mode) override
+    {
+        return seekoff(position, std::ios_base::beg, mode);
+    }
+
+private:
+    std::streamsize moved(size_t count)
+    {
+        done_ += static_cast<double>(count);
+        unreported_ += count;
+        if (unreported_ >= report_bytes) {
+            unreported_ = 0;
+            if (interrupter_.wasInterrupted(static_cast<int>(100 * std::min(done_ / expected_, 1.0)))) return 0;
+        }
+        return static_cast<std::streamsize>(count);
+    }
+
+    static constexpr size_t report_bytes = 4 << 20; /* some hundred reports a second */
+    FILE *file_;
+    double expected_, done_ = 0;
+    size_t unreported_ = 0;
+    swarf_interrupter &interrupter_;
+};
+
+/* Archive::write() to a stream of ours, with the offsets that other programs seek by. */
+class stream_archive : public openvdb::io::Archive {
+public:
+    void save(std::ostream &stream, const openvdb::GridCPtrVec &grids) const { Archive::write(stream, grids, true); }
+};
+
+struct file_closer {
+    void operator()(FILE *file) const { std::fclose(file); }
+};
+
+openvdb::GridPtrVecPtr read_grids(FILE *file, double size, swarf_interrupter &interrupter)
+{
+    file_buffer buffer(file, size, interrupter);
+    std::istream stream(&buffer);
+    stream.exceptions(std::ios_base::failbit | std::ios_base::badbit | std::ios_base::eofbit);
+    openvdb::io::Stream archive(stream, /*delayLoad=*/false);
+    return archive.getGrids();
+}
+
+/* The first level set of floats, or null with what is there instead. */
+openvdb::FloatGrid::Ptr find_level_set(const openvdb::GridPtrVec &grids, std::string &there)
+{
+    std::ostringstream list;
+    for (const auto &grid : grids) {
+        if (!grid) continue;
+        const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+        if (floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET) return floats;
+        list << (list.tellp() > 0 ? ", " : "") << '"' << grid->getName() << "\" (" << grid->valueType() << ", "
+             << openvdb::GridBase::gridClassToString(grid->getGridClass()) << ')';
+    }
+    there = list.str().empty() ? "no grids" : list.str().substr(0, 200);
+    return nullptr;
+}
+
+/* Uniform voxels along the axes are all that a stock knows. */
+swarf_status check_transform(const openvdb::FloatGrid &grid, const char *path, double &voxel)
+{
+    if (!grid.transform().isLinear())
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s: its grid is not linear (a frustum); a stock has uniform voxels", path);
+    const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
+    voxel = matrix(0, 0);
+    bool fine = std::isfinite(voxel) && voxel > 0;
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 3 && fine; k++)
+            fine = i == 3 ? std::isfinite(matrix(i, k)) : std::fabs(matrix(i, k) - (i == k ? voxel : 0)) <= 1e-9 * voxel;
+    if (!fine)
+        return swarf_fail(SWARF_ERROR_FORMAT,
+                          "%s: its voxels are not cubes along the axes (rotated, mirrored or stretched); resample it", path);
+    return SWARF_OK;
+}
+
+/* Set everything that is not within `band` to +-band and inactive. */
+void trim_band(openvdb::FloatGrid &grid, float band)
+{
+    openvdb::FloatTree &tree = grid.tree();
+    auto tile = tree.beginValueOn();
+    tile.setMaxDepth(openvdb::FloatTree::ValueOnIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) tile.setActiveState(false);
+    for (auto leaf = tree.beginLeaf(); leaf; ++leaf)
+        for (openvdb::Index i = 0; i < SWARF_LEAF_SIZE; i++) {
+            const float value = leaf->getValue(i);
+            if (leaf->isValueOn(i) && !(std::fabs(value) < band)) leaf->setValueOff(i, value < 0 ? -band : band);
+        }
+    openvdb::tools::changeLevelSetBackground(tree, band);
+    openvdb::tools::pruneLevelSet(tree);
+}
+
+bool all_finite(const openvdb::FloatTree &tree)
+{
+    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
+        for (openvdb::Index i = 0; i < SWARF_LEAF_SIZE; i++)
+            if (!std::isfinite(leaf->getValue(i))) return false;
+    return true;
+}
+
+/* Refuse what would not fit: two far apart leaves of a broken file ask for all the nodes between them. */
+swarf_status check_extent(const openvdb::FloatGrid &grid, const char *path, double voxel)
+{
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    if (box.empty()) return SWARF_OK;
+    swarf_box extent;
+    for (int k = 0; k < 3; k++) {
+        extent.lo[k] = box.min()[k] * voxel;
+        extent.hi[k] = (box.max()[k] + 1.0) * voxel;
+    }
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = voxel;
+    double origin[3];
+    int32_t count[3];
+    const swarf_status status = swarf_stock_layout(&extent, &options, origin, count);
+    return status == SWARF_OK ? SWARF_OK : swarf_fail_within(status, "%s", path);
+}
+
+/* Bring any level set to the form a stock has. Wider bands are cut to three voxels, which changes no value inside
+ * them; narrower ones are continued outwards by fast sweeping, which keeps the surface. */
+swarf_status normalise(openvdb::FloatGrid::Ptr &grid, const char *path)
+{
+    double voxel;
+    SWARF_TRY(check_transform(*grid, path, voxel));
+    const double width = static_cast<double>(grid->background()) / voxel;
+    if (!(std::isfinite(width) && width >= 1))
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s: a band of %g voxels; at least 1 is needed", path, width);
+    if (!all_finite(grid->tree())) return swarf_fail(SWARF_ERROR_FORMAT, "%s: it holds values that are not finite", path);
+    const auto band = static_cast<float>(SWARF_HALF_WIDTH * voxel);
+    trim_band(*grid, std::min(grid->background(), width > SWARF_HALF_WIDTH ? band : grid->background()));
+    SWARF_TRY(check_extent(*grid, path, voxel));
+    if (width < SWARF_HALF_WIDTH - 1e-3) {
+        grid = openvdb::tools::dilateSdf(*grid, static_cast<int>(std::ceil(SWARF_HALF_WIDTH - width)),
+                                         openvdb::tools::NN_FACE_EDGE_VERTEX, 2);
+        grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    }
+    trim_band(*grid, band);
+    return SWARF_OK;
+}
+
+} // namespace
+
+extern "C" swarf_status swarf_stock_read(const char *path, const swarf_progress *progress, swarf_stock **out)
+{
+    SWARF_REQUIRE(path && out, "stock: path or output missing");
+    return swarf_guard(path, [&]() -> swarf_status {
+        swarf_vdb_initialize();
+        const std::unique_ptr<FILE, file_closer> file(std::fopen(path, "rb"));
+        struct stat info;
+        if (!file || fstat(fileno(file.get()), &info) != 0)
+            return swarf_fail(SWARF_ERROR_IO, "%s: cannot open: %s", path, std::strerror(errno));
+        if (!S_ISREG(info.st_mode)) return swarf_fail(SWARF_ERROR_IO, "%s: not a file", path);
+        swarf_interrupter interrupter(progress);
+        openvdb::GridPtrVecPtr grids;
+        try {
+            grids = read_grids(file.get(), static_cast<double>(info.st_size), interrupter);
+        } catch (const std::ios_base::failure &) {
+            SWARF_TRY(interrupter.status());
+            return swarf_fail(SWARF_ERROR_FORMAT, "%s: cut short or damaged: it ends before its data does", path);
+        } catch (const openvdb::Exception &error) {
+            return swarf_fail(SWARF_ERROR_FORMAT, "%s: not a .vdb file, or damaged: %s", path, error.what());
+        } catch (const std::exception &error) { /* lengths that no memory holds */
+            return swarf_fail(SWARF_ERROR_FORMAT, "%s: damaged: it claims impossible sizes (%s)", path, error.what());
+        }
+        std::string there;
+        openvdb::FloatGrid::Ptr grid = find_level_set(*grids, there);
+        if (!grid) return swarf_fail(SWARF_ERROR_FORMAT, "%s: no level set of floats in it, but %s", path, there.c_str());
+        SWARF_TRY(swarf_arena_run([&] { return normalise(grid, path); }));
+        return swarf_stock_wrap(swarf_tree_adopt(grid), out);
+    });
+}
+
+extern "C" swarf_status swarf_stock_write(swarf_stock *stock, const char *path, const swarf_progress *progress)
+{
+    SWARF_REQUIRE(path && *path, "stock: path missing");
+    SWARF_TRY(swarf_stock_enter_read(stock));
+    swarf_file_writer writer;
+    swarf_status status = swarf_file_begin(path, &writer);
+    if (status == SWARF_OK) {
+        swarf_interrupter interrupter(progress);
+        status = swarf_guard(path, [&]() -> swarf_status {
+            size_t leaves, bytes;
+            swarf_tree_size(stock->tree, &leaves, &bytes);
+            const auto grid = stock->tree->grid->copy(); /* shares the tree */
+            grid->setName("stock");
+            grid->setCreator("swarf");
+            grid->setGridClass(openvdb::GRID_LEVEL_SET);
+            grid->insertMeta("voxel_mm", openvdb::DoubleMetadata(stock->tree->layout.voxel));
+            file_buffer buffer(writer.stream, static_cast<double>(bytes), interrupter);
+            std::ostream stream(&buffer);
+            stream.exceptions(std::ios_base::failbit | std::ios_base::badbit);
+            try {
+                stream_archive().save(stream, {grid});
+            } catch (const std::ios_base::failure &) {
+                SWARF_TRY(interrupter.status());
+                return swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", path, std::strerror(errno));
+            }
+            return SWARF_OK;
+        });
+        if (status == SWARF_OK)
+            status = swarf_file_commit(&writer);
+        else
+            swarf_file_abandon(&writer);
+    }
+    swarf_stock_leave(stock);
+    return status;
+}
