@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The add-on in the real GUI (see run): workbench, commands in both workbenches, panel, cancel, result, mark, icon.
+Leaves screenshots and the verdict PASSED or FAILED in $SWARF_GUI_OUT."""
+
+import os
+import sys
+import time
+import traceback
+
+import FreeCAD
+import FreeCADGui as Gui
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+OUT = os.environ["SWARF_GUI_OUT"]
+sys.path.insert(0, os.path.join(HERE, "inside"))
+
+from PySide import QtCore  # noqa: E402
+
+try:
+    from PySide import QtWidgets
+except ImportError:  # FreeCAD 0.20
+    from PySide import QtGui as QtWidgets
+
+# The CAM workbench asks about units at its first activation unless the schema has minutes (6: small parts and CNC).
+FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Units").SetInt("UserSchema", 6)
+for group in ("Path", "CAM"):
+    FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/" + group).SetBool("WarningSuppressVelocity", True)
+
+WAIT_SECONDS = 120
+
+
+def pump(seconds):
+    """Let the GUI live."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        QtWidgets.QApplication.processEvents()
+        time.sleep(0.01)
+
+
+def wait_for(condition, what):
+    """Let the GUI live until a condition holds."""
+    end = time.monotonic() + WAIT_SECONDS
+    while not condition():
+        assert time.monotonic() < end, "timeout: " + what
+        pump(0.05)
+
+
+def screenshot(name):
+    """The whole screen: widgets do not hold what OpenGL drew."""
+    pump(0.5)
+    QtWidgets.QApplication.primaryScreen().grabWindow(0).save(os.path.join(OUT, name))
+
+
+def menu_texts():
+    """Texts of all entries of the menu bar's menus."""
+    found = []
+    bar = Gui.getMainWindow().menuBar()
+    menus = [action.menu() for action in bar.actions() if action.menu()]
+    while menus:
+        menu = menus.pop()
+        for action in menu.actions():
+            found.append(action.text().replace("&", ""))
+            if action.menu():
+                menus.append(action.menu())
+    return found
+
+
+def check():
+    """All of it, in the order of a user."""
+    import samples
+    from freecad.swarf_cam import native
+    from freecad.swarf_cam.app import simulation
+    from freecad.swarf_cam.gui import panel
+
+    assert "SwarfWorkbench" in Gui.listWorkbenches()
+    assert {"Swarf_Simulate", "Swarf_Update"} <= set(Gui.listCommands())
+    document = FreeCAD.newDocument("gui")
+    document.UndoMode = 1
+    job = samples.make_job(document)
+    document.recompute()
+    Gui.activateWorkbench("SwarfWorkbench")
+    pump(0.5)
+    assert "Simulate milling" in menu_texts(), menu_texts()
+    assert native.is_available(), "the native module is not on the path"
+    Gui.ActiveDocument.ActiveView.viewIsometric()
+    Gui.SendMsgToActiveView("ViewFit")
+
+    Gui.Selection.addSelection(document.Name, job.Name)
+    Gui.runCommand("Swarf_Simulate", 0)
+    pump(0.5)
+    form = Gui.getMainWindow().findChild(QtWidgets.QWidget, "SwarfSimulationPanel")
+    assert form is not None, "the command opened no panel"
+    screenshot("panel.png")
+    Gui.Control.closeDialog()
+    pump(0.2)
+
+    opened = panel.show_panel(job)
+    opened.voxel.setValue(0.002)
+    pump(0.1)
+    opened.accept()
+    pump(0.1)
+    screenshot("refused.png")
+    wait_for(lambda: opened.worker is None, "refusal of a voxel that needs too much memory")
+    assert opened.message.text(), "no message for a voxel that needs too much memory"
+    assert not [obj for obj in document.Objects if simulation.is_simulation(obj)]
+
+    opened.voxel.setValue(0.04)
+    opened.accept()
+    opened.reject()
+    wait_for(lambda: opened.worker is None, "cancel")
+    cancelled = not opened.closed
+    if cancelled:  # fast machines may be done before they are asked
+        assert not [obj for obj in document.Objects if simulation.is_simulation(obj)], "cancelled, but not undone"
+        opened.voxel.setValue(0.2)
+        undo = document.UndoCount
+        opened.accept()
+        wait_for(lambda: opened.closed, "simulation")
+        assert document.UndoCount == undo + 1, "not one transaction"
+    pump(0.3)
+    assert not Gui.Control.activeDialog()
+
+    obj, = [item for item in document.Objects if simulation.is_simulation(item)]
+    assert obj.UpToDate and obj.VolumeRemoved.Value > 400, obj.VolumeRemoved
+    assert obj.ViewObject.Proxy.getIcon().endswith("swarf.svg")
+    for hidden in (job.Stock, *job.Model.Group, *(tc.Tool for tc in job.Tools.Group)):
+        hidden.ViewObject.Visibility = False
+    Gui.Selection.clearSelection()
+    Gui.SendMsgToActiveView("ViewFit")
+    screenshot("result.png")
+
+    job.Operations.Group[0].Path = samples.path_of("G0 X-5 Y10 Z-5", "G1 X45 F10")
+    document.recompute()
+    assert not obj.UpToDate
+    assert obj.ViewObject.Proxy.getIcon().endswith("swarf-outdated.svg")
+    screenshot("outdated.png")
+    Gui.Selection.addSelection(document.Name, obj.Name)
+    Gui.runCommand("Swarf_Update", 0)
+    wait_for(lambda: obj.UpToDate, "update")
+    pump(0.3)
+    assert obj.VolumeRemoved.Value > 1000, obj.VolumeRemoved
+
+    cam = "CAMWorkbench" if "CAMWorkbench" in Gui.listWorkbenches() else "PathWorkbench"
+    Gui.activateWorkbench(cam)
+    pump(1.0)
+    screenshot("cam.png")
+    assert "Simulate milling" in menu_texts(), "the command is not in the menu of %s: %s" % (cam, menu_texts())
+
+    path = os.path.join(OUT, "gui.FCStd")
+    document.saveAs(path)
+    FreeCAD.closeDocument(document.Name)
+    document = FreeCAD.openDocument(path)
+    pump(0.5)
+    obj, = [item for item in document.Objects if simulation.is_simulation(item)]
+    assert type(obj.ViewObject.Proxy).__name__ == "SimulationView"
+    assert obj.UpToDate and obj.ViewObject.Proxy.getIcon().endswith("swarf.svg")
+
+
+def run():
+    """Check, tell, end."""
+    verdict = "FAILED"
+    try:
+        check()
+        verdict = "PASSED"
+    except BaseException:
+        traceback.print_exc()
+        screenshot("failed.png")
+    with open(os.path.join(OUT, "verdict"), "w") as file:
+        file.write(verdict + "\n")
+    print("GUI TEST", verdict)
+    sys.stdout.flush()
+    for name in list(FreeCAD.listDocuments()):
+        FreeCAD.closeDocument(name)
+    if verdict != "PASSED":
+        os._exit(1)
+    Gui.getMainWindow().close()
+
+
+def watch():
+    """A modal dialog would stop the test: show it and close it."""
+    dialog = QtWidgets.QApplication.activeModalWidget()
+    if dialog is not None:
+        print("MODAL", type(dialog).__name__, dialog.windowTitle(), getattr(dialog, "text", lambda: "")())
+        dialog.grab().save(os.path.join(OUT, "modal.png"))
+        dialog.close()
+
+
+WATCH = QtCore.QTimer()
+WATCH.timeout.connect(watch)
+WATCH.start(2000)
+QtCore.QTimer.singleShot(1500, run)
