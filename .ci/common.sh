@@ -25,7 +25,7 @@ die() {
 step() {
     local name=$1 log=build/logs/$1.log started=$SECONDS
     shift
-    if "$@" >"$log" 2>&1; then
+    if "$@" >"$log" 2>&1 </dev/null; then
         printf '%-20s %4d s\n' "$name" $((SECONDS - started))
     else
         local status=$?
