@@ -584,6 +584,31 @@ static void test_arguments_and_files(void)
     CHECK_OK(swarf_gcode_read(NULL, 0, "a", NULL, NULL, &program));
     swarf_program_release(program);
 
+    /* the examples: every move known, cuts within their stock's reach, lowest point */
+    static const struct {
+        const char *name;
+        size_t arcs, operations;
+        double lowest;
+    } examples[] = {{"slot.nc", 4, 1, -4}, {"bracket.nc", 30, 2, -13.2}};
+    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
+        char path[1200];
+        snprintf(path, sizeof path, "%s/examples/%s", SWARF_SOURCE_DIR, examples[i].name);
+        program = NULL;
+        CHECK_OK(swarf_gcode_read_file(path, NULL, NULL, &program));
+        CHECK(swarf_program_arc_count(program) == examples[i].arcs);
+        CHECK(swarf_program_operation_count(program) == examples[i].operations);
+        double lowest = 0;
+        for (size_t k = 0; k < swarf_program_move_count(program); k++) {
+            const swarf_move *move = &swarf_program_moves(program)[k];
+            if (swarf_move_get_kind(move) != SWARF_MOVE_FEED) continue;
+            CHECK(move->feed_mm_min > 0 && move->end[0] >= -5 && move->end[0] <= 65);
+            CHECK(move->end[1] >= -6 && move->end[1] <= 40 && move->end[2] <= 1);
+            if (move->end[2] < lowest) lowest = move->end[2];
+        }
+        CHECK_NEAR(lowest, examples[i].lowest, 0);
+        swarf_program_release(program);
+    }
+
     static const struct {
         const char *name;
         size_t moves;
