@@ -162,6 +162,30 @@ static void check_cancel(swarf_scene *scene, const swarf_box *box, test_random *
     free(rgba);
 }
 
+/** Nothing left: a picture of the background alone. */
+static void check_empty(swarf_stock *stock)
+{
+    swarf_stock *same = NULL;
+    swarf_scene *scene = NULL;
+    swarf_box box;
+    swarf_camera camera;
+    swarf_picture_options options = swarf_picture_options_default();
+    options.width = options.height = 8;
+    memset(options.background, 0, sizeof options.background);
+    memset(options.background_top, 0, sizeof options.background_top);
+    uint8_t rgba[4 * 8 * 8];
+    memset(rgba, 1, sizeof rgba);
+    if (CHECK_OK(swarf_stock_copy(stock, &same)) && CHECK_OK(swarf_stock_boolean(stock, same, SWARF_DIFFERENCE)) &&
+        CHECK_OK(swarf_scene_create(stock, &scene)) && CHECK_OK(swarf_stock_box(stock, &box)) &&
+        CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 0, &box, 1, &camera)) &&
+        CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, rgba))) {
+        CHECK(box.lo[0] > box.hi[0]);
+        for (size_t i = 0; i < sizeof rgba; i++) CHECK(rgba[i] == 0);
+    }
+    swarf_scene_destroy(scene);
+    swarf_stock_destroy(same);
+}
+
 static void check_png(test_random *random)
 {
     enum { WIDTH = 37, HEIGHT = 23 };
@@ -201,6 +225,7 @@ int main(void)
         check_cancel(scene, &box, &random);
     }
     swarf_scene_destroy(scene);
+    if (stock) check_empty(stock);
     swarf_stock_destroy(stock);
     return test_end();
 }

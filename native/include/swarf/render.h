@@ -32,7 +32,9 @@ typedef struct swarf_camera {
     double fov_deg;
 } swarf_camera;
 
-/** The camera of a preset that shows the whole box in a picture of this aspect (width / height). */
+/** The camera of a preset that shows the whole box in a picture of this aspect (width / height); an empty box gives
+ *  some camera, so that a stock with nothing left can be pictured too. SWARF_ERROR_ARGUMENT: NULL, no such view,
+ *  numbers not finite. Any thread. */
 SWARF_API swarf_status swarf_camera_fit(swarf_view view, int perspective, const swarf_box *box, double aspect,
                                         swarf_camera *out);
 
@@ -43,7 +45,9 @@ SWARF_API swarf_status swarf_scene_create(swarf_stock *stock, swarf_scene **out)
 SWARF_API void swarf_scene_destroy(swarf_scene *scene);
 
 /** First hits of `count` rays (origin and direction 3 doubles each, mm): distance along the direction in its units
- *  (INFINITY: none) and unit normal (3 floats each). `normal` may be NULL. */
+ *  (INFINITY: none) and unit normal (3 floats each; zero without a hit). `normal` may be NULL. A ray that starts in
+ *  material meets nothing. SWARF_ERROR_ARGUMENT names the ray with a zero direction or a number that is not finite;
+ *  SWARF_ERROR_BUSY: the stock is in use. All cores; the same bits for any threads and any grouping of rays. */
 SWARF_API swarf_status swarf_scene_cast(swarf_scene *scene, const double *origin, const double *direction,
                                         size_t count, double *distance, float *normal);
 
