@@ -10,8 +10,7 @@
 /* ---- views ---- */
 
 typedef struct view_object {
-    PyObject_HEAD
-    PyObject *owner;
+    PyObject_HEAD PyObject *owner;
     const void *data;
     const char *format; /* a string literal */
     Py_ssize_t itemsize;
@@ -151,10 +150,32 @@ static int number_load(char letter, size_t size, const char *from, int *is_float
     if (!letter || !strchr("bBhHiIlLqQnN", letter)) return -1;
     const int is_signed = strchr("bhilqn", letter) != NULL;
     switch (size) {
-    case 1: { uint8_t v; memcpy(&v, from, 1); *whole = v; *negative = is_signed && (int8_t)v < 0; break; }
-    case 2: { uint16_t v; memcpy(&v, from, 2); *whole = v; *negative = is_signed && (int16_t)v < 0; break; }
-    case 4: { uint32_t v; memcpy(&v, from, 4); *whole = v; *negative = is_signed && (int32_t)v < 0; break; }
-    case 8: { memcpy(whole, from, 8); *negative = is_signed && (int64_t)*whole < 0; break; }
+    case 1: {
+        uint8_t v;
+        memcpy(&v, from, 1);
+        *whole = v;
+        *negative = is_signed && (int8_t)v < 0;
+        break;
+    }
+    case 2: {
+        uint16_t v;
+        memcpy(&v, from, 2);
+        *whole = v;
+        *negative = is_signed && (int16_t)v < 0;
+        break;
+    }
+    case 4: {
+        uint32_t v;
+        memcpy(&v, from, 4);
+        *whole = v;
+        *negative = is_signed && (int32_t)v < 0;
+        break;
+    }
+    case 8: {
+        memcpy(whole, from, 8);
+        *negative = is_signed && (int64_t)*whole < 0;
+        break;
+    }
     default: return -1;
     }
     if (*negative) { /* sign-extended, so that its value can be had as a double */
@@ -208,8 +229,8 @@ static int table_of_rows(PyObject *rows, const char *name, Py_ssize_t columns, e
             const size_t at = (size_t)(row * columns + column);
             if (kind == ELEMENT_DOUBLE) {
                 const double value = PyFloat_AsDouble(item);
-                failed = (value == -1.0 && PyErr_Occurred()) ||
-                         store_double(name, row, column, value, (double *)out + at);
+                failed =
+                    (value == -1.0 && PyErr_Occurred()) || store_double(name, row, column, value, (double *)out + at);
             } else {
                 PyObject *whole = PyNumber_Index(item); /* no float here */
                 int overflow = 0;

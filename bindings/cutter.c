@@ -54,8 +54,8 @@ static int part_read(PyObject *parts, Py_ssize_t index, swarf_cutter_part *out)
     double *table;
     size_t count;
     if (buffer_doubles(nodes, "nodes", 3, &table, &count)) return -1;
-    *out = (swarf_cutter_part){.kind = (swarf_part_kind)kind, .nodes = (const swarf_profile_node *)table,
-                               .node_count = count};
+    *out = (swarf_cutter_part){
+        .kind = (swarf_part_kind)kind, .nodes = (const swarf_profile_node *)table, .node_count = count};
     return 0;
 }
 
@@ -136,9 +136,9 @@ static PyObject *cutter_parts(PyObject *self, void *Py_UNUSED(closure))
     for (size_t i = 0; result && i < count; i++) {
         swarf_cutter_part part;
         const swarf_status status = swarf_cutter_part_get(handle, i, &part);
-        PyObject *nodes = status ? error_raise(state_of(self), status)
-                                 : buffer_view(state_of(self), self, part.nodes, "d", sizeof(double), part.node_count,
-                                               3, NULL);
+        PyObject *nodes =
+            status ? error_raise(state_of(self), status)
+                   : buffer_view(state_of(self), self, part.nodes, "d", sizeof(double), part.node_count, 3, NULL);
         PyObject *pair = nodes ? Py_BuildValue("(sN)", part_names[part.kind], nodes) : NULL;
         if (!pair || PyTuple_SetItem(result, (Py_ssize_t)i, pair) < 0) Py_CLEAR(result);
     }

@@ -35,7 +35,8 @@ static PyObject *mesh_new(PyTypeObject *type, PyObject *args, PyObject *keywords
     double *vertices = NULL;
     uint32_t *index = NULL;
     swarf_triangles triangles = {0};
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO:Mesh", names, &vertices_object, &triangles_object)) return NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO:Mesh", names, &vertices_object, &triangles_object))
+        return NULL;
     if (buffer_doubles(vertices_object, "vertices", 3, &vertices, &triangles.vertex_count) ||
         buffer_indices(triangles_object, "triangles", 3, &index, &triangles.triangle_count)) {
         PyMem_Free(vertices);
@@ -163,13 +164,14 @@ static PyObject *mesh_edges(PyObject *self, void *closure)
     const swarf_topology topology = swarf_mesh_topology(handle_of(self));
     return PyLong_FromSize_t(*(const size_t *)((const char *)&topology + (size_t)(uintptr_t)closure));
 }
-#define FIELD(name) (void *)(uintptr_t) offsetof(swarf_topology, name)
+#define FIELD(name) (void *)(uintptr_t)offsetof(swarf_topology, name)
 
 static PyObject *mesh_repr(PyObject *self)
 {
     const swarf_triangles triangles = swarf_mesh_triangles(handle_of(self));
     return PyUnicode_FromFormat("<swarf.Mesh of %zu vertices, %zu triangles, %s>", triangles.vertex_count,
-                                triangles.triangle_count, swarf_mesh_topology(handle_of(self)).closed ? "closed" : "open");
+                                triangles.triangle_count,
+                                swarf_mesh_topology(handle_of(self)).closed ? "closed" : "open");
 }
 
 static PyMethodDef mesh_methods[] = {

@@ -25,7 +25,7 @@ typedef struct module_state {
     PyTypeObject *simulation;
     PyTypeObject *mesh;
     PyTypeObject *view;
-    PyTypeObject *finding;    /* struct sequences */
+    PyTypeObject *finding; /* struct sequences */
     PyTypeObject *comparison;
     PyObject *error; /* exceptions, see error.c */
     PyObject *format_error;
@@ -89,16 +89,14 @@ PyObject *buffer_view(module_state *state, PyObject *owner, const void *data, co
 /* ---- cutter.c ---- */
 
 typedef struct cutter_object {
-    PyObject_HEAD
-    swarf_cutter *handle;
+    PyObject_HEAD swarf_cutter *handle;
 } cutter_object;
 extern PyType_Spec cutter_spec;
 
 /* ---- program.c ---- */
 
 typedef struct program_object {
-    PyObject_HEAD
-    swarf_program *handle;
+    PyObject_HEAD swarf_program *handle;
     Py_ssize_t exports; /* views of its arrays: they must not move */
     Py_ssize_t readers; /* calls without the GIL that read it */
 } program_object;
@@ -110,8 +108,7 @@ int program_range(program_object *program, Py_ssize_t first, PyObject *count, si
 /* ---- stock.c ---- */
 
 typedef struct stock_object {
-    PyObject_HEAD
-    swarf_stock *handle;
+    PyObject_HEAD swarf_stock *handle;
 } stock_object;
 extern PyType_Spec stock_spec;
 
@@ -135,8 +132,7 @@ PyObject *stock_cast(PyObject *self, PyObject *args, PyObject *keywords);
 /* ---- mesh.c ---- */
 
 typedef struct mesh_object {
-    PyObject_HEAD
-    swarf_mesh *handle;
+    PyObject_HEAD swarf_mesh *handle;
 } mesh_object;
 extern PyType_Spec mesh_spec;
 extern PyStructSequence_Desc comparison_desc;

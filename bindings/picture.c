@@ -24,8 +24,7 @@ static swarf_status draw(swarf_stock *stock, swarf_view view, int perspective, c
             box.lo[i] = 0;
             box.hi[i] = 1;
         }
-    if (!status)
-        status = swarf_camera_fit(view, perspective, &box, (double)options->width / options->height, &camera);
+    if (!status) status = swarf_camera_fit(view, perspective, &box, (double)options->width / options->height, &camera);
     if (!status) status = swarf_scene_create(stock, &scene);
     if (status) return status;
     status = swarf_scene_picture(scene, &camera, options, progress, rgba);
@@ -104,8 +103,8 @@ PyObject *stock_cast(PyObject *self, PyObject *args, PyObject *keywords)
         if (call_end(&call, state_of(self), status) == 0) {
             PyObject *t = buffer_view(state_of(self), distances, PyBytes_AsString(distances), "d", sizeof(double),
                                       count, 0, NULL);
-            PyObject *n = buffer_view(state_of(self), normals, PyBytes_AsString(normals), "f", sizeof(float), count, 3,
-                                      NULL);
+            PyObject *n =
+                buffer_view(state_of(self), normals, PyBytes_AsString(normals), "f", sizeof(float), count, 3, NULL);
             result = t && n ? PyTuple_Pack(2, t, n) : NULL;
             Py_XDECREF(t);
             Py_XDECREF(n);

@@ -69,8 +69,7 @@ static PyObject *program_read_gcode(PyObject *type, PyObject *args, PyObject *ke
     native_call call;
     if (!gcode_options(start, &options) && !call_begin(&call, progress)) {
         swarf_program *handle = NULL;
-        const swarf_status status =
-            swarf_gcode_read_file(PyBytes_AsString(path), &options, &call.progress, &handle);
+        const swarf_status status = swarf_gcode_read_file(PyBytes_AsString(path), &options, &call.progress, &handle);
         if (call_end(&call, state_of_type((PyTypeObject *)type), status) == 0)
             result = program_wrap((PyTypeObject *)type, handle);
         else
@@ -129,7 +128,8 @@ static PyObject *program_add_operation(PyObject *self, PyObject *args, PyObject 
 {
     static char *names[] = {"name", NULL};
     const char *name;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "s:add_operation", names, &name) || program_open(self)) return NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "s:add_operation", names, &name) || program_open(self))
+        return NULL;
     const size_t index = swarf_program_operation_count(handle_of(self));
     const swarf_status status = swarf_program_add_operation(handle_of(self), name);
     return status ? error_raise(state_of(self), status) : PyLong_FromSize_t(index);
@@ -367,12 +367,14 @@ static PyMethodDef program_methods[] = {
 static PyGetSetDef program_getset[] = {
     {"moves", program_moves, NULL,
      "Read-only view of the moves: records end (3 float64), feed_mm_min (float32), line (uint32), arc (int32,\n"
-     "-1: straight), section_kind (uint32: section * 8 + kind). While a view lives the program cannot grow.", NULL},
+     "-1: straight), section_kind (uint32: section * 8 + kind). While a view lives the program cannot grow.",
+     NULL},
     {"arcs", program_arcs, NULL,
      "Read-only view of the arcs: records centre (3 float64), angle_rad, plane (int32), reserved.", NULL},
     {"sections", program_sections, NULL,
      "Read-only view of the sections: records tool, operation, spindle, coolant (int32), spindle_rpm (float64),\n"
-     "work_offset, reserved (int32).", NULL},
+     "work_offset, reserved (int32).",
+     NULL},
     {"operations", program_operations, NULL, "Names of the operations.", NULL},
     {"tools", program_tools, NULL, "Numbers of the tools that feed moves use, sorted; -1: no tool loaded.", NULL},
     {NULL, NULL, NULL, NULL, NULL},

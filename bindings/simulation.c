@@ -3,8 +3,7 @@
 #include "native.h"
 
 typedef struct simulation_object {
-    PyObject_HEAD
-    swarf_simulation *handle;
+    PyObject_HEAD swarf_simulation *handle;
 } simulation_object;
 
 static const char *const severity_names[] = {"note", "warning", "error"};
@@ -157,8 +156,8 @@ static int tools_read(module_state *state, PyObject *dict, swarf_tool **out, siz
             PyErr_Format(PyExc_TypeError, "tools: tool %ld is no Cutter", number);
             break;
         }
-        tools[found++] = (swarf_tool){.number = (int32_t)number,
-                                      .cutter = swarf_cutter_retain(((cutter_object *)value)->handle)};
+        tools[found++] =
+            (swarf_tool){.number = (int32_t)number, .cutter = swarf_cutter_retain(((cutter_object *)value)->handle)};
     }
     if (PyErr_Occurred()) {
         tools_free(tools, found);
@@ -202,9 +201,8 @@ PyObject *stock_simulate(PyObject *self, PyObject *args, PyObject *keywords)
     program->readers++;
     int failed = call_begin(&call, progress);
     if (!failed) {
-        const swarf_status status =
-            swarf_stock_simulate(((stock_object *)self)->handle, program->handle, first, count, tools, tool_count,
-                                 &options, &call.progress, &handle);
+        const swarf_status status = swarf_stock_simulate(((stock_object *)self)->handle, program->handle, first, count,
+                                                         tools, tool_count, &options, &call.progress, &handle);
         failed = call_end(&call, state, status);
     }
     program->readers--;

@@ -17,10 +17,6 @@ string(REGEX REPLACE "/$" "" SWARF_PC_PREFIX ${SWARF_PC_PREFIX})
 configure_file(cmake/swarf.pc.in swarf.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/swarf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-# FreeCAD's own folder for add-ons of the whole system, below the prefix /usr.
-set(SWARF_INSTALL_ADDONDIR share/freecad/Mod/Swarf CACHE STRING "Folder for the FreeCAD add-on, below the prefix")
-install(DIRECTORY freecad_mod/ DESTINATION ${SWARF_INSTALL_ADDONDIR} PATTERN __pycache__ EXCLUDE)
-
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(CPACK_GENERATOR DEB)

@@ -31,7 +31,8 @@ swarf_status swarf_file_read(const char *path, char **data, size_t *length)
         used += got;
         if (got == 0) break;
     }
-    if (status == SWARF_OK && ferror(file)) status = swarf_fail(SWARF_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
+    if (status == SWARF_OK && ferror(file))
+        status = swarf_fail(SWARF_ERROR_IO, "%s: cannot read: %s", path, strerror(errno));
     fclose(file);
     if (status != SWARF_OK) {
         free(buffer);

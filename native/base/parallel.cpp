@@ -13,7 +13,6 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
-#include <mutex>
 #include <string>
 #include <thread>
 

@@ -24,7 +24,8 @@ static swarf_status count_edges(const swarf_triangles *t, swarf_topology *topolo
     const size_t count = t->triangle_count * 3;
     if (count == 0) return SWARF_OK;
     edge *edges = malloc(count * sizeof *edges);
-    if (!edges) return swarf_fail(SWARF_ERROR_MEMORY, "out of memory for the edges of %zu triangles", t->triangle_count);
+    if (!edges)
+        return swarf_fail(SWARF_ERROR_MEMORY, "out of memory for the edges of %zu triangles", t->triangle_count);
     size_t used = 0;
     for (size_t i = 0; i < t->triangle_count; i++) {
         const uint32_t *v = t->index + 3 * i;
@@ -88,8 +89,7 @@ swarf_status swarf_triangles_topology(const swarf_triangles *t, swarf_topology *
         topology.area_mm2 += 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         /* relative to the first vertex, so that far away parts lose no digits */
         const float *o = t->xyz;
-        topology.volume_mm3 +=
-            ((p[0][0] - o[0]) * n[0] + (p[0][1] - o[1]) * n[1] + (p[0][2] - o[2]) * n[2]) / 6.0;
+        topology.volume_mm3 += ((p[0][0] - o[0]) * n[0] + (p[0][1] - o[1]) * n[1] + (p[0][2] - o[2]) * n[2]) / 6.0;
     }
     SWARF_TRY(count_edges(t, &topology));
     *out = topology;

@@ -49,7 +49,8 @@ static swarf_status check_piece(swarf_part_kind kind, size_t index, const swarf_
                           name, index, piece->r0, piece->z0);
     if (piece->radius > 0 && !piece->convex && piece->centre_r - piece->radius < -same &&
         fmin(piece->z0, piece->z1) < piece->centre_z && fmax(piece->z0, piece->z1) > piece->centre_z)
-        return swarf_fail(SWARF_ERROR_GEOMETRY, "cutter: the arc after node %zu of the %s crosses the axis", index, name);
+        return swarf_fail(SWARF_ERROR_GEOMETRY, "cutter: the arc after node %zu of the %s crosses the axis", index,
+                          name);
     return SWARF_OK;
 }
 
@@ -69,10 +70,12 @@ static swarf_status copy_part(const swarf_cutter_part *part, swarf_cutter_part *
         if (!isfinite(node.r) || !isfinite(node.z) || !isfinite(node.bulge))
             status = swarf_fail(SWARF_ERROR_ARGUMENT, "cutter: node %zu of the %s is not finite", i, name);
         else if (node.r < -same)
-            status = swarf_fail(SWARF_ERROR_GEOMETRY, "cutter: node %zu of the %s has the radius %g; it must not be negative",
-                                i, name, node.r);
+            status =
+                swarf_fail(SWARF_ERROR_GEOMETRY,
+                           "cutter: node %zu of the %s has the radius %g; it must not be negative", i, name, node.r);
         else if (fabs(node.bulge) > 1 + 1e-9)
-            status = swarf_fail(SWARF_ERROR_GEOMETRY, "cutter: the arc after node %zu of the %s is more than half a circle", i, name);
+            status = swarf_fail(SWARF_ERROR_GEOMETRY,
+                                "cutter: the arc after node %zu of the %s is more than half a circle", i, name);
         if (node.r < same) node.r = 0;
         if (i == 0 && node.r > 0) nodes[used++] = (swarf_profile_node){0, node.z, 0};
         if (used && hypot(node.r - nodes[used - 1].r, node.z - nodes[used - 1].z) < same) {
@@ -176,9 +179,10 @@ static double square_integral(const swarf_profile_piece *piece)
     if (piece->radius == 0) return h * (piece->r0 * piece->r0 + piece->r0 * piece->r1 + piece->r1 * piece->r1) / 3;
     /* r = c +- sqrt(R^2 - u^2), u = z - centre: r^2 = c^2 +- 2 c sqrt(R^2 - u^2) + R^2 - u^2 */
     const double R = piece->radius, c = piece->centre_r;
-    const double u0 = fmax(-R, fmin(R, piece->z0 - piece->centre_z)), u1 = fmax(-R, fmin(R, piece->z1 - piece->centre_z));
-    const double root = 0.5 * (u1 * sqrt(R * R - u1 * u1) - u0 * sqrt(R * R - u0 * u0) +
-                               R * R * (asin(u1 / R) - asin(u0 / R)));
+    const double u0 = fmax(-R, fmin(R, piece->z0 - piece->centre_z)),
+                 u1 = fmax(-R, fmin(R, piece->z1 - piece->centre_z));
+    const double root =
+        0.5 * (u1 * sqrt(R * R - u1 * u1) - u0 * sqrt(R * R - u0 * u0) + R * R * (asin(u1 / R) - asin(u0 / R)));
     return (c * c + R * R) * (u1 - u0) - (u1 * u1 * u1 - u0 * u0 * u0) / 3 + (piece->convex ? 2 : -2) * c * root;
 }
 

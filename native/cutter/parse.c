@@ -23,7 +23,8 @@ static swarf_status parse_dimension(const char *text, const char *name, const ch
 {
     const char *equals = memchr(word, '=', length);
     if (!equals || equals == word)
-        return swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': '%.*s' is not of the form letter=number", text, (int)length, word);
+        return swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': '%.*s' is not of the form letter=number", text, (int)length,
+                          word);
     const size_t letters = (size_t)(equals - word);
     for (size_t i = 0; i < swarf_dimension_count; i++) {
         const swarf_dimension *dimension = &swarf_dimension_table[i];
@@ -34,7 +35,8 @@ static swarf_status parse_dimension(const char *text, const char *name, const ch
         char *end;
         *value = strtod(equals + 1, &end);
         if (end == equals + 1 || end != word + length || !isfinite(*value))
-            return swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': '%.*s' does not end in a number", text, (int)length, word);
+            return swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': '%.*s' does not end in a number", text, (int)length,
+                              word);
         return SWARF_OK;
     }
     return swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': '%.*s' is no dimension of %s", text, (int)letters, word, name);
@@ -61,7 +63,8 @@ static swarf_status parse_form(const char *text, const char *words, swarf_cutter
             }
         }
         if (given < 2 || (*end && *end != ':') || !isfinite(value[0]) || !isfinite(value[1]) || !isfinite(value[2])) {
-            status = swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': node %zu is not of the form r/z or r/z/bulge", text, count);
+            status = swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': node %zu is not of the form r/z or r/z/bulge", text,
+                                count);
             break;
         }
         nodes[count++] = (swarf_profile_node){value[0], value[1], value[2]};
@@ -88,7 +91,8 @@ swarf_status swarf_cutter_parse(const char *text, swarf_cutter **out)
     if (shape == SWARF_SHAPE_COUNT || !colon) {
         char names[256];
         list_names(names, sizeof names);
-        return swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': must be NAME:DIMENSIONS as in flat:d=3,l=18; names are %s", text, names);
+        return swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': must be NAME:DIMENSIONS as in flat:d=3,l=18; names are %s",
+                          text, names);
     }
     if (shape == SWARF_SHAPE_FORM) return parse_form(text, colon + 1, out);
     swarf_dimensions dimensions = swarf_dimensions_default();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* The common shapes as meridians. */
-#include "base/status.h"
 #include "cutter/shape.h"
+#include "base/status.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -29,12 +29,14 @@ static const double right_angle = 0.5 * M_PI;
 swarf_dimensions swarf_dimensions_default(void)
 {
     swarf_dimensions d = {.size = sizeof d};
-    for (size_t i = 0; i < swarf_dimension_count; i++)
-        *(double *)((char *)&d + swarf_dimension_table[i].offset) = NAN;
+    for (size_t i = 0; i < swarf_dimension_count; i++) *(double *)((char *)&d + swarf_dimension_table[i].offset) = NAN;
     return d;
 }
 
-#define LETTER(letters, member, words) {letters, offsetof(swarf_dimensions, member), words}
+#define LETTER(letters, member, words)                                                                                 \
+    {                                                                                                                  \
+        letters, offsetof(swarf_dimensions, member), words                                                             \
+    }
 const swarf_dimension swarf_dimension_table[] = {
     LETTER("d", diameter, "diameter"),
     LETTER("l", length, "length"),
@@ -98,8 +100,8 @@ static swarf_status check_dimensions(swarf_shape shape, const swarf_dimensions *
                       entry->name, dimension->letters, dimension->words, entry->known);
         const int may_be_zero = dimension->letters[0] == 't' || dimension->letters[0] == 'r';
         SWARF_REQUIRE(isfinite(value) && (value > 0 || (value == 0 && may_be_zero)),
-                      "cutter: %s (%s) of %s is %g; it must be a positive number", dimension->letters,
-                      dimension->words, entry->name, value);
+                      "cutter: %s (%s) of %s is %g; it must be a positive number", dimension->letters, dimension->words,
+                      entry->name, value);
     }
     SWARF_REQUIRE(isnan(d->shank_diameter) == isnan(d->shank_length), "cutter: a shank needs both sd and sl");
     SWARF_REQUIRE(isnan(d->holder_diameter) == isnan(d->holder_length), "cutter: a holder needs both hd and hl");
@@ -109,10 +111,12 @@ static swarf_status check_dimensions(swarf_shape shape, const swarf_dimensions *
 /* Cone below a cylinder: drills, chamfer mills, V-bits. */
 static swarf_status draw_point(const char *name, double radius, double tip, double angle_deg, double length, outline *o)
 {
-    SWARF_REQUIRE(angle_deg < 180, "cutter: the included angle a of %s is %g; it must be below 180 degrees", name, angle_deg);
+    SWARF_REQUIRE(angle_deg < 180, "cutter: the included angle a of %s is %g; it must be below 180 degrees", name,
+                  angle_deg);
     SWARF_REQUIRE(tip <= radius, "cutter: the tip of %s is wider than its diameter", name);
     const double cone = (radius - tip) / tan(0.5 * angle_deg * M_PI / 180);
-    SWARF_REQUIRE(length >= cone - 1e-9, "cutter: the length l of %s is %g; its point alone is %g long", name, length, cone);
+    SWARF_REQUIRE(length >= cone - 1e-9, "cutter: the length l of %s is %g; its point alone is %g long", name, length,
+                  cone);
     to(o, 0, 0);
     to(o, tip, 0);
     to(o, radius, cone);
@@ -123,9 +127,11 @@ static swarf_status draw_point(const char *name, double radius, double tip, doub
 static swarf_status draw_tapered_ball(const swarf_dimensions *d, outline *o)
 {
     const double ball = 0.5 * d->tip_diameter, angle = d->angle_deg * M_PI / 180;
-    SWARF_REQUIRE(d->angle_deg < 90, "cutter: the angle a of taperedball is %g; per side it must be below 90", d->angle_deg);
+    SWARF_REQUIRE(d->angle_deg < 90, "cutter: the angle a of taperedball is %g; per side it must be below 90",
+                  d->angle_deg);
     const double touch_r = ball * cos(angle), touch_z = ball * (1 - sin(angle));
-    SWARF_REQUIRE(d->length > touch_z, "cutter: the length l of taperedball is %g; its ball alone is %g", d->length, touch_z);
+    SWARF_REQUIRE(d->length > touch_z, "cutter: the length l of taperedball is %g; its ball alone is %g", d->length,
+                  touch_z);
     to_arc(o, 0, 0, right_angle - angle);
     to(o, touch_r, touch_z);
     double end = touch_r + (d->length - touch_z) * tan(angle);
@@ -144,13 +150,13 @@ static swarf_status draw_thread_mill(const swarf_dimensions *d, outline *o)
 {
     const double core = 0.5 * d->neck_diameter, depth = 0.5 * d->diameter - core;
     const double angle_deg = isnan(d->angle_deg) ? 60 : d->angle_deg, teeth = isnan(d->teeth) ? 1 : d->teeth;
-    SWARF_REQUIRE(teeth == floor(teeth) && teeth <= MOST_TEETH, "cutter: k of threadmill is %g; it must be a whole number up to %d",
-                  teeth, MOST_TEETH);
+    SWARF_REQUIRE(teeth == floor(teeth) && teeth <= MOST_TEETH,
+                  "cutter: k of threadmill is %g; it must be a whole number up to %d", teeth, MOST_TEETH);
     SWARF_REQUIRE(angle_deg < 180, "cutter: the flank angle a of threadmill must be below 180 degrees");
     SWARF_REQUIRE(depth > 0, "cutter: the neck n of threadmill is not below its diameter d");
     const double half = depth * tan(0.5 * angle_deg * M_PI / 180);
-    SWARF_REQUIRE(2 * half <= d->pitch * (1 + 1e-9), "cutter: the teeth of threadmill are %g wide, more than the pitch p = %g",
-                  2 * half, d->pitch);
+    SWARF_REQUIRE(2 * half <= d->pitch * (1 + 1e-9),
+                  "cutter: the teeth of threadmill are %g wide, more than the pitch p = %g", 2 * half, d->pitch);
     SWARF_REQUIRE(d->length >= teeth * d->pitch * (1 - 1e-9), "cutter: the length l of threadmill is below k * p = %g",
                   teeth * d->pitch);
     to(o, 0, 0);
@@ -183,8 +189,10 @@ static swarf_status draw(swarf_shape shape, const swarf_dimensions *d, outline *
         to(o, radius, length);
         return SWARF_OK;
     case SWARF_SHAPE_BULL:
-        SWARF_REQUIRE(corner <= radius, "cutter: the corner radius r of bull is %g, above its radius %g", corner, radius);
-        SWARF_REQUIRE(length >= corner, "cutter: the length l of bull is %g, below its corner radius %g", length, corner);
+        SWARF_REQUIRE(corner <= radius, "cutter: the corner radius r of bull is %g, above its radius %g", corner,
+                      radius);
+        SWARF_REQUIRE(length >= corner, "cutter: the length l of bull is %g, below its corner radius %g", length,
+                      corner);
         to(o, 0, 0);
         to_arc(o, radius - corner, 0, right_angle);
         to(o, radius, corner);
@@ -192,8 +200,7 @@ static swarf_status draw(swarf_shape shape, const swarf_dimensions *d, outline *
         return SWARF_OK;
     case SWARF_SHAPE_CHAMFER:
         return draw_point(name, radius, isnan(d->tip_diameter) ? 0 : 0.5 * d->tip_diameter, d->angle_deg, length, o);
-    case SWARF_SHAPE_DRILL:
-        return draw_point(name, radius, 0, isnan(d->angle_deg) ? 118 : d->angle_deg, length, o);
+    case SWARF_SHAPE_DRILL: return draw_point(name, radius, 0, isnan(d->angle_deg) ? 118 : d->angle_deg, length, o);
     case SWARF_SHAPE_TAPERED_BALL: return draw_tapered_ball(d, o);
     case SWARF_SHAPE_LOLLIPOP: {
         SWARF_REQUIRE(neck < radius, "cutter: the neck n of lollipop is not below its diameter d");
@@ -207,7 +214,8 @@ static swarf_status draw(swarf_shape shape, const swarf_dimensions *d, outline *
     case SWARF_SHAPE_TSLOT:
         SWARF_REQUIRE(neck < radius, "cutter: the neck n of tslot is not below its diameter d");
         SWARF_REQUIRE(length > height, "cutter: the length l of tslot is not above its edge h");
-        SWARF_REQUIRE(2 * corner <= height && corner <= radius - neck, "cutter: the corner radius r of tslot does not fit");
+        SWARF_REQUIRE(2 * corner <= height && corner <= radius - neck,
+                      "cutter: the corner radius r of tslot does not fit");
         to(o, 0, 0);
         to_arc(o, radius - corner, 0, right_angle);
         to_arc(o, radius, corner, 0);
@@ -217,9 +225,11 @@ static swarf_status draw(swarf_shape shape, const swarf_dimensions *d, outline *
         to(o, neck, length);
         return SWARF_OK;
     case SWARF_SHAPE_DOVETAIL: {
-        SWARF_REQUIRE(d->angle_deg < 90, "cutter: the angle a of dovetail is %g; it must be below 90 degrees", d->angle_deg);
+        SWARF_REQUIRE(d->angle_deg < 90, "cutter: the angle a of dovetail is %g; it must be below 90 degrees",
+                      d->angle_deg);
         const double top = radius - height / tan(d->angle_deg * M_PI / 180);
-        SWARF_REQUIRE(top >= neck, "cutter: the dovetail narrows to a radius of %g at h, below its neck's %g", top, neck);
+        SWARF_REQUIRE(top >= neck, "cutter: the dovetail narrows to a radius of %g at h, below its neck's %g", top,
+                      neck);
         SWARF_REQUIRE(length > height, "cutter: the length l of dovetail is not above its edge h");
         to(o, 0, 0);
         to(o, radius, 0);
