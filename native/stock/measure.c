@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/status.h"
+#include "stock/block.h"
 #include "stock/leaf.h"
 
 #include <math.h>
@@ -36,12 +37,21 @@ static double leaf_occupancy(const float *values, float scale)
 static swarf_status node_volume(void *context, size_t node)
 {
     const struct walk *walk = context;
+    const swarf_stock *stock = walk->stock;
     const float scale = (float)(1 / walk->layout->voxel);
     const uint64_t *words = walk->layout->occupied + node * SWARF_NODE_WORDS;
     double total = 0;
+    int32_t origin[3], corner[3];
+    swarf_node_corner(walk->layout, node, origin);
     for (unsigned slot = 0; slot < SWARF_NODE_SLOTS; slot++) {
         if (!(words[slot >> 6] >> (slot & 63) & 1)) continue;
-        const float *values = swarf_tree_leaf(walk->stock->tree, node, slot);
+        const float *values = swarf_tree_leaf(stock->tree, node, slot);
+        float face[SWARF_LEAF_SIZE];
+        swarf_leaf_corner(origin, slot, corner);
+        if (!values && stock->untouched && swarf_block_reaches(stock, corner)) {
+            swarf_block_fill(stock, corner, face);
+            values = face;
+        }
         total += values ? leaf_occupancy(values, scale) : SWARF_LEAF_SIZE;
     }
     walk->volume[node] = total;
@@ -65,7 +75,7 @@ swarf_status swarf_measure_volume(const swarf_stock *stock, double *out)
 swarf_status swarf_stock_volume(swarf_stock *stock, double *out)
 {
     SWARF_REQUIRE(out, "stock: output missing");
-    SWARF_TRY(swarf_stock_enter_read(stock));
+    SWARF_TRY(swarf_stock_enter_write(stock)); /* nothing is written, but faces need no leaves to be measured */
     const swarf_status status = swarf_measure_volume(stock, out);
     swarf_stock_leave(stock);
     return status;

@@ -13,7 +13,7 @@
 #ifndef SWARF_STOCK_VDB_TREE_H
 #define SWARF_STOCK_VDB_TREE_H
 
-#include "swarf/base.h"
+#include "sweep/body.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -26,9 +26,6 @@ enum {
     SWARF_NODE_SLOTS = 4096,
     SWARF_NODE_WORDS = 64
 };
-
-/** Half width of the narrow band in voxels. */
-#define SWARF_HALF_WIDTH 3.0f
 
 typedef struct swarf_tree swarf_tree;
 

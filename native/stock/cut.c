@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Cutting: stock = max(stock, -sweep) over all paths of a batch at once.
+ *
+ * The tracks of the batch are binned by columns of 32 x 32 voxels. A column is one piece of work: its leaves share no
+ * words of any mask with another column's, so that there are no locks and the order of columns does not matter. Within it
+ * blocks of 32^3, 16^3 and 8^3 voxels are visited with ever shorter lists of tracks; air is skipped by occupancy, a block
+ * that one track covers is removed whole, and a leaf is read and written once however many tracks meet it. */
+#include "stock/cut.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/status.h"
+#include "stock/block.h"
+#include "stock/leaf.h"
+#include "sweep/kernel.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COLUMN = 32, COLUMN_LEAVES = COLUMN / SWARF_LEAF_DIM, NODE_COLUMNS = SWARF_NODE_DIM / COLUMN };
+
+struct cut_work {
+    swarf_stock *stock;
+    const swarf_tree_layout *layout;
+    const swarf_kernel *kernel;
+    const swarf_body *body;
+    const swarf_track *tracks;
+    const int32_t *columns; /* numbers (x * columns_y + y) of the columns that have tracks */
+    const int32_t *starts;  /* per column of the layout: where its tracks start in `numbers` */
+    const int32_t *numbers;
+    int32_t columns_y;
+    swarf_column *scratch; /* one per thread */
+};
+
+/* Place of a leaf, by its coordinates in leaves. */
+struct place {
+    size_t node;
+    unsigned slot;
+};
+
+static struct place place_of(const swarf_tree_layout *layout, int32_t x, int32_t y, int32_t z)
+{
+    const size_t node = ((size_t)(x >> 4) * (size_t)layout->count[1] + (size_t)(y >> 4)) * (size_t)layout->count[2] +
+                        (size_t)(z >> 4);
+    return (struct place){node, (unsigned)(x & 15) << 8 | (unsigned)(y & 15) << 4 | (unsigned)(z & 15)};
+}
+
+/* Is any slot of an aligned cube of `edge` (1, 2 or 4) leaves occupied? A word holds four rows of y at one x. */
+static int occupied(const swarf_tree_layout *layout, int32_t x, int32_t y, int32_t z, int edge)
+{
+    const struct place place = place_of(layout, x, y, z);
+    const uint64_t *words = layout->occupied + place.node * SWARF_NODE_WORDS;
+    const uint64_t row = ((1u << edge) - 1ull) << (z & 15);
+    uint64_t rows = 0;
+    for (int i = 0; i < edge; i++) rows |= row << (((y + i) & 3) * 16);
+    for (int i = 0; i < edge; i++)
+        if (words[((x & 15) + i) * 4 + ((y & 15) >> 2)] & rows) return 1;
+    return 0;
+}
+
+static void remove_cube(const struct cut_work *work, int32_t x, int32_t y, int32_t z, int edge)
+{
+    for (int i = 0; i < edge * edge * edge; i++) {
+        const struct place place =
+            place_of(work->layout, x + i / (edge * edge), y + i / edge % edge, z + i % edge);
+        const uint64_t word = work->layout->occupied[place.node * SWARF_NODE_WORDS + (place.slot >> 6)];
+        if (word >> (place.slot & 63) & 1) swarf_tree_tile(work->stock->tree, place.node, place.slot, 0);
+    }
+}
+
+static swarf_status cut_leaf(const struct cut_work *work, const swarf_column *column, const int32_t *list, size_t count,
+                             int32_t x, int32_t y, int32_t z)
+{
+    const swarf_tree_layout *layout = work->layout;
+    const struct place place = place_of(layout, x, y, z);
+    const int32_t corner[3] = {x * SWARF_LEAF_DIM, y * SWARF_LEAF_DIM, z * SWARF_LEAF_DIM};
+    _Alignas(64) float fresh[SWARF_LEAF_SIZE];
+    float *stored = swarf_tree_leaf(work->stock->tree, place.node, place.slot);
+    swarf_leaf_cut cut = {.voxel = (float)layout->voxel, .background = layout->background};
+    cut.x = (float)(corner[0] - column->middle[0]);
+    cut.y = (float)(corner[1] - column->middle[1]);
+    cut.z = (float)(corner[2] - column->middle[2]);
+    cut.values = stored ? stored : fresh;
+    if (!stored) {
+        cut.solid = !(work->stock->untouched && swarf_block_reaches(work->stock, corner));
+        if (!cut.solid) swarf_block_fill(work->stock, corner, fresh);
+    }
+    if (!work->kernel->cut(work->body, column, list, count, &cut)) return SWARF_OK;
+    if (cut.least >= SWARF_LEAF_DROP * cut.voxel) {
+        swarf_tree_tile(work->stock->tree, place.node, place.slot, 0);
+    } else if (stored) {
+        swarf_tree_leaf_mask(work->stock->tree, place.node, place.slot, cut.mask);
+    } else if (cut.most > -cut.background) {
+        return swarf_tree_leaf_add(work->stock->tree, place.node, place.slot, fresh, cut.mask);
+    }
+    return SWARF_OK;
+}
+
+/* A cube of `edge` leaves at (x, y, z) in leaves, with the tracks that survived one level up. */
+static swarf_status cut_cube(const struct cut_work *work, const swarf_column *column, int level, const int32_t *list,
+                             size_t count, int32_t x, int32_t y, int32_t z, int edge)
+{
+    if (!occupied(work->layout, x, y, z, edge)) return SWARF_OK;
+    const float half = 0.5f * (float)(edge * SWARF_LEAF_DIM - 1);
+    const swarf_block block = {(float)(x * SWARF_LEAF_DIM - column->middle[0]) + half,
+                               (float)(y * SWARF_LEAF_DIM - column->middle[1]) + half,
+                               (float)(z * SWARF_LEAF_DIM - column->middle[2]) + half, half, half};
+    size_t left = 0;
+    int32_t *kept = column->list[level];
+    if (work->kernel->cull(work->body, column, list, count, &block, kept, &left)) {
+        remove_cube(work, x, y, z, edge);
+        return SWARF_OK;
+    }
+    if (left == 0) return SWARF_OK;
+    if (edge == 1) return cut_leaf(work, column, kept, left, x, y, z);
+    const int next = edge / 2;
+    for (int i = 0; i < 8; i++)
+        SWARF_TRY(cut_cube(work, column, level + 1, kept, left, x + (i >> 2) * next, y + (i >> 1 & 1) * next,
+                           z + (i & 1) * next, next));
+    return SWARF_OK;
+}
+
+static swarf_status cut_column(void *context, size_t index)
+{
+    const struct cut_work *work = context;
+    const int32_t number = work->columns[index];
+    const int32_t x = number / work->columns_y, y = number % work->columns_y;
+    const int32_t *numbers = work->numbers + work->starts[number];
+    const size_t count = (size_t)(work->starts[number + 1] - work->starts[number]);
+    swarf_column *column = &work->scratch[swarf_parallel_slot()];
+    const double middle[3] = {x * COLUMN + 15.5, y * COLUMN + 15.5,
+                              0.5 * SWARF_NODE_DIM * work->layout->count[2]};
+    SWARF_TRY(swarf_column_fill(column, middle, work->tracks, numbers, count));
+    double lo = INFINITY, hi = -INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        const swarf_track *track = &work->tracks[numbers[i]];
+        lo = fmin(lo, track->point[2]);
+        hi = fmax(hi, track->point[2] + track->rise);
+    }
+    lo = fmax(lo + work->body->z_lo - SWARF_HALF_WIDTH, 0);
+    hi = fmin(hi + work->body->z_hi + SWARF_HALF_WIDTH, (double)work->layout->count[2] * SWARF_NODE_DIM - 1);
+    for (int32_t z = (int32_t)floor(lo / COLUMN); lo <= hi && z <= (int32_t)floor(hi / COLUMN); z++)
+        SWARF_TRY(cut_cube(work, column, 1, column->list[0], count, x * COLUMN_LEAVES, y * COLUMN_LEAVES,
+                           z * COLUMN_LEAVES, COLUMN_LEAVES));
+    return SWARF_OK;
+}
+
+/* Call `see` for every column that the track may reach: those in its box, and of a long slanting line those near it. */
+typedef void (*column_fn)(void *context, int32_t column);
+static void for_columns(const swarf_tree_layout *layout, const swarf_body *body, const swarf_track *track, column_fn see,
+                        void *context)
+{
+    const double reach = (double)body->radius + SWARF_HALF_WIDTH;
+    if (track->point[2] + body->z_lo - SWARF_HALF_WIDTH > (double)layout->count[2] * SWARF_NODE_DIM ||
+        track->point[2] + track->rise + body->z_hi + SWARF_HALF_WIDTH < 0)
+        return;
+    int32_t lo[2], hi[2];
+    for (int k = 0; k < 2; k++) {
+        const double along = (k ? track->uy : track->ux) * track->run;
+        double a = fmin(track->point[k], track->point[k] + along), b = fmax(track->point[k], track->point[k] + along);
+        if (track->is_arc) {
+            a = track->centre[k] - track->radius;
+            b = track->centre[k] + track->radius;
+        }
+        const int32_t last = layout->count[k] * NODE_COLUMNS - 1;
+        lo[k] = (int32_t)fmax(0, floor(fmax(-1, (a - reach) / COLUMN)));
+        hi[k] = (int32_t)fmin(last, floor(fmax(-1, fmin(last, (b + reach) / COLUMN))));
+    }
+    const int slanting = !track->is_arc && hi[0] - lo[0] > 1 && hi[1] - lo[1] > 1;
+    const double near = reach + 0.5 * COLUMN * M_SQRT2;
+    for (int32_t x = lo[0]; x <= hi[0]; x++)
+        for (int32_t y = lo[1]; y <= hi[1]; y++) {
+            const double dx = x * COLUMN + 15.5 - track->point[0], dy = y * COLUMN + 15.5 - track->point[1];
+            if (slanting) {
+                const double s = fmin(fmax(dx * track->ux + dy * track->uy, 0), track->run);
+                if (hypot(dx - s * track->ux, dy - s * track->uy) > near) continue;
+            }
+            if (track->is_arc) {
+                const double away = hypot(x * COLUMN + 15.5 - track->centre[0], y * COLUMN + 15.5 - track->centre[1]);
+                if (fabs(away - track->radius) > near) continue;
+            }
+            see(context, x * (layout->count[1] * NODE_COLUMNS) + y);
+        }
+}
+
+/* Which tracks each column has: counted, then filled in the order of the tracks. */
+struct bins {
+    int32_t *starts, *numbers, *columns;
+    size_t column_count; /* that have tracks */
+    int32_t track;
+    size_t total;
+};
+
+static void count_one(void *context, int32_t column)
+{
+    struct bins *bins = context;
+    bins->starts[column + 1]++;
+    bins->total++;
+}
+
+static void add_one(void *context, int32_t column)
+{
+    struct bins *bins = context;
+    bins->numbers[bins->starts[column]++] = bins->track;
+}
+
+static swarf_status fill_bins(const swarf_tree_layout *layout, const swarf_body *body, const swarf_track_list *list,
+                              struct bins *bins)
+{
+    const size_t columns = (size_t)layout->count[0] * (size_t)layout->count[1] * NODE_COLUMNS * NODE_COLUMNS;
+    bins->starts = calloc(columns + 1, sizeof *bins->starts);
+    if (!bins->starts) return swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
+    for (size_t i = 0; i < list->count; i++) for_columns(layout, body, &list->tracks[i], count_one, bins);
+    if (bins->total > INT32_MAX || list->count > INT32_MAX)
+        return swarf_fail(SWARF_ERROR_MEMORY, "stock: %zu moves at once are too many; cut in smaller batches", list->count);
+    for (size_t i = 0; i < columns; i++) bins->column_count += bins->starts[i + 1] > 0;
+    for (size_t i = 0; i < columns; i++) bins->starts[i + 1] += bins->starts[i];
+    bins->numbers = malloc((bins->total + 1) * sizeof *bins->numbers);
+    bins->columns = malloc((bins->column_count + 1) * sizeof *bins->columns);
+    if (!bins->numbers || !bins->columns) return swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
+    size_t used = 0;
+    for (size_t i = 0; i < columns; i++)
+        if (bins->starts[i + 1] > bins->starts[i]) bins->columns[used++] = (int32_t)i;
+    for (size_t i = 0; i < list->count; i++) {
+        bins->track = (int32_t)i;
+        for_columns(layout, body, &list->tracks[i], add_one, bins);
+    }
+    /* filling moved every start to the next one's place */
+    memmove(bins->starts + 1, bins->starts, columns * sizeof *bins->starts);
+    bins->starts[0] = 0;
+    return SWARF_OK;
+}
+
+static swarf_status cut_tracks(swarf_stock *stock, const swarf_body *body, const swarf_track_list *list,
+                               const swarf_progress *progress, double from, double to)
+{
+    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
+    struct bins bins = {0};
+    const int threads = swarf_threads();
+    swarf_column *scratch = calloc((size_t)threads, sizeof *scratch);
+    swarf_status status = scratch ? fill_bins(layout, body, list, &bins) : swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
+    if (status == SWARF_OK) {
+        struct cut_work work = {stock, layout, swarf_kernel_current(), body, list->tracks, bins.columns, bins.starts,
+                                bins.numbers, layout->count[1] * NODE_COLUMNS, scratch};
+        status = swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, to);
+    }
+    for (int i = 0; scratch && i < threads; i++) swarf_column_free(&scratch[i]);
+    free(scratch);
+    free(bins.starts);
+    free(bins.numbers);
+    free(bins.columns);
+    return status;
+}
+
+swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
+                            const swarf_progress *progress, double from, double to)
+{
+    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
+    if (body->component_count == 0) return swarf_progress_report(progress, to);
+    swarf_track_list list = {0};
+    swarf_status status = SWARF_OK;
+    for (size_t i = 0; i < count && status == SWARF_OK; i++)
+        status = swarf_track_append(&list, &paths[i], layout->origin, layout->voxel);
+    if (status == SWARF_OK) status = cut_tracks(stock, body, &list, progress, from, to);
+    free(list.tracks);
+    return status == SWARF_OK ? swarf_progress_report(progress, to) : status;
+}
+
+swarf_status swarf_stock_cut(swarf_stock *stock, const swarf_cutter *cutter, const swarf_path *paths, size_t count,
+                             const swarf_progress *progress)
+{
+    SWARF_REQUIRE(cutter && (paths || count == 0), "stock: cutter or paths missing");
+    SWARF_TRY(swarf_stock_enter_write(stock));
+    swarf_body *body = NULL;
+    swarf_status status = swarf_body_create(cutter, SWARF_PART_FLUTES, swarf_stock_voxel(stock), &body);
+    if (status == SWARF_OK) status = swarf_cut_body(stock, body, paths, count, progress, 0, 1);
+    swarf_body_destroy(body);
+    swarf_stock_leave(stock);
+    return status;
+}

@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Playing a program on a stock: moves in order, in batches that share a tool and an operation. */
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/status.h"
+#include "stock/cut.h"
+#include "stock/measure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct swarf_simulation {
+    double *removed; /* per operation */
+    size_t operation_count;
+    double *per_move;
+    size_t per_move_count;
+    double initial, final;
+    swarf_finding *findings;
+    size_t finding_count, finding_room;
+};
+
+/* No more moves than this at once: 100 MB of tracks and bins, while a batch is already as good as the whole. */
+enum { MOST_AT_ONCE = 1 << 18 };
+
+struct player {
+    swarf_stock *stock;
+    const swarf_program *program;
+    const swarf_tool *tools;
+    size_t tool_count;
+    swarf_body **bodies; /* per tool, made when first used */
+    swarf_simulation *result;
+    const swarf_progress *progress;
+    size_t first, count, batch;
+    swarf_path *paths;
+    size_t path_room;
+};
+
+swarf_simulation_options swarf_simulation_options_default(void)
+{
+    return (swarf_simulation_options){.size = sizeof(swarf_simulation_options)};
+}
+
+void swarf_simulation_destroy(swarf_simulation *simulation)
+{
+    if (!simulation) return;
+    free(simulation->removed);
+    free(simulation->per_move);
+    free(simulation->findings);
+    free(simulation);
+}
+
+const double *swarf_simulation_removed(const swarf_simulation *simulation, size_t *count)
+{
+    *count = simulation->operation_count;
+    return simulation->removed;
+}
+
+const double *swarf_simulation_removed_per_move(const swarf_simulation *simulation, size_t *count)
+{
+    *count = simulation->per_move_count;
+    return simulation->per_move;
+}
+
+double swarf_simulation_volume_initial(const swarf_simulation *simulation)
+{
+    return simulation->initial;
+}
+
+double swarf_simulation_volume_final(const swarf_simulation *simulation)
+{
+    return simulation->final;
+}
+
+const swarf_finding *swarf_simulation_findings(const swarf_simulation *simulation, size_t *count)
+{
+    *count = simulation->finding_count;
+    return simulation->findings;
+}
+
+static swarf_status report_tool(struct player *player, size_t move, const swarf_section *section, const char *what)
+{
+    swarf_simulation *result = player->result;
+    for (size_t i = 0; i < result->finding_count; i++)
+        if (result->findings[i].tool == section->tool && result->findings[i].operation == section->operation) return SWARF_OK;
+    SWARF_TRY(swarf_array_reserve((void **)&result->findings, &result->finding_room, result->finding_count + 1,
+                                  sizeof *result->findings));
+    swarf_finding *finding = &result->findings[result->finding_count++];
+    memset(finding, 0, sizeof *finding);
+    finding->severity = SWARF_ERROR;
+    finding->operation = section->operation;
+    finding->move = move;
+    finding->line = swarf_program_moves(player->program)[move].line;
+    finding->tool = section->tool;
+    const char *operation = section->operation >= 0 && (size_t)section->operation < result->operation_count
+                                ? swarf_program_operation_name(player->program, (size_t)section->operation)
+                                : "";
+    if (section->tool < 0)
+        snprintf(finding->text, sizeof finding->text, "operation '%.80s' moves before any tool is loaded; nothing was cut",
+                 operation);
+    else
+        snprintf(finding->text, sizeof finding->text, "operation '%.80s': tool T%d %s; nothing was cut", operation,
+                 (int)section->tool, what);
+    return SWARF_OK;
+}
+
+/* The body of the section's tool; NULL with a finding when there is none that cuts. */
+static swarf_status find_body(struct player *player, size_t move, const swarf_section *section, const swarf_body **out)
+{
+    *out = NULL;
+    for (size_t i = 0; i < player->tool_count; i++) {
+        if (player->tools[i].number != section->tool || !player->tools[i].cutter) continue;
+        if (!player->bodies[i])
+            SWARF_TRY(swarf_body_create(player->tools[i].cutter, SWARF_PART_FLUTES, swarf_stock_voxel(player->stock),
+                                        &player->bodies[i]));
+        if (player->bodies[i]->component_count == 0) return report_tool(player, move, section, "has no flutes");
+        *out = player->bodies[i];
+        return SWARF_OK;
+    }
+    return report_tool(player, move, section, "is not in the tool table");
+}
+
+/* Cut moves first .. end - 1, which share a tool. */
+static swarf_status play_batch(struct player *player, size_t first, size_t end, const swarf_section *section)
+{
+    SWARF_TRY(swarf_array_reserve((void **)&player->paths, &player->path_room, end - first, sizeof *player->paths));
+    size_t used = 0, first_moving = first;
+    for (size_t i = first; i < end; i++) {
+        SWARF_TRY(swarf_program_path(player->program, i, &player->paths[used]));
+        if (!player->paths[used].has_motion) continue;
+        if (used++ == 0) first_moving = i;
+    }
+    const double from = (double)(first - player->first) / (double)player->count;
+    const double to = (double)(end - player->first) / (double)player->count;
+    const swarf_body *body = NULL;
+    if (used) SWARF_TRY(find_body(player, first_moving, section, &body));
+    if (!body) return swarf_progress_report(player->progress, to);
+    return swarf_cut_body(player->stock, body, player->paths, used, player->progress, from, to);
+}
+
+static swarf_status account(struct player *player, double *volume, double *removed)
+{
+    double now;
+    SWARF_TRY(swarf_measure_volume(player->stock, &now));
+    *removed += *volume - now;
+    *volume = now;
+    return SWARF_OK;
+}
+
+static swarf_status play(struct player *player)
+{
+    const swarf_move *moves = swarf_program_moves(player->program);
+    const swarf_section *sections = swarf_program_sections(player->program);
+    swarf_simulation *result = player->result;
+    SWARF_TRY(swarf_measure_volume(player->stock, &result->initial));
+    double volume = result->initial;
+    const size_t last = player->first + player->count;
+    for (size_t i = player->first; i < last;) {
+        const swarf_section *section = &sections[swarf_move_get_section(&moves[i])];
+        size_t end = i + 1;
+        while (end < last && end - i < player->batch) {
+            const swarf_section *next = &sections[swarf_move_get_section(&moves[end])];
+            if (next->tool != section->tool || next->operation != section->operation) break;
+            end++;
+        }
+        SWARF_TRY(play_batch(player, i, end, section));
+        const int new_operation =
+            end == last || sections[swarf_move_get_section(&moves[end])].operation != section->operation;
+        double removed = 0;
+        if (new_operation || result->per_move) SWARF_TRY(account(player, &volume, &removed));
+        if (section->operation >= 0 && (size_t)section->operation < result->operation_count)
+            result->removed[section->operation] += removed;
+        if (result->per_move) result->per_move[i - player->first] = removed;
+        i = end;
+    }
+    result->final = volume;
+    return SWARF_OK;
+}
+
+swarf_status swarf_stock_simulate(swarf_stock *stock, const swarf_program *program, size_t first, size_t count,
+                                  const swarf_tool *tools, size_t tool_count, const swarf_simulation_options *options,
+                                  const swarf_progress *progress, swarf_simulation **out)
+{
+    SWARF_REQUIRE(program && out && (tools || tool_count == 0), "simulation: program, tools or output missing");
+    SWARF_REQUIRE(!options || options->size == sizeof *options, "simulation: options of another version");
+    const size_t total = swarf_program_move_count(program);
+    SWARF_REQUIRE(first <= total && count <= total - first, "simulation: moves %zu .. %zu of %zu", first, first + count, total);
+    const int per_move = options && options->removed_per_move;
+    struct player player = {.stock = stock, .program = program, .tools = tools, .tool_count = tool_count,
+                            .progress = progress, .first = first, .count = count, .batch = MOST_AT_ONCE};
+    if (options && options->batch && options->batch < player.batch) player.batch = options->batch;
+    if (per_move) player.batch = 1;
+    SWARF_TRY(swarf_stock_enter_write(stock));
+    swarf_simulation *result = calloc(1, sizeof *result);
+    player.result = result;
+    player.bodies = calloc(tool_count ? tool_count : 1, sizeof *player.bodies);
+    swarf_status status = SWARF_OK;
+    if (result) {
+        result->operation_count = swarf_program_operation_count(program);
+        result->removed = calloc(result->operation_count + 1, sizeof *result->removed);
+        result->per_move_count = per_move ? count : 0;
+        if (per_move) result->per_move = calloc(count + 1, sizeof *result->per_move);
+    }
+    if (!result || !player.bodies || !result->removed || (per_move && !result->per_move))
+        status = swarf_fail(SWARF_ERROR_MEMORY, "simulation: out of memory");
+    if (status == SWARF_OK) status = play(&player);
+    for (size_t i = 0; player.bodies && i < tool_count; i++) swarf_body_destroy(player.bodies[i]);
+    free(player.bodies);
+    free(player.paths);
+    swarf_stock_leave(stock);
+    if (status != SWARF_OK) {
+        swarf_simulation_destroy(result);
+        return status;
+    }
+    *out = result;
+    return SWARF_OK;
+}

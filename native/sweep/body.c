@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Cutting a meridian into convex chains, and each chain into the component it bounds. */
+#include "sweep/body.h"
+
+#include "base/memory.h"
+#include "base/status.h"
+#include "cutter/cutter.h"
+#include "swarf/sweep.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Working copy of a piece, in mm and double. Angles are those of the outward normal, -pi/2 (down) .. pi/2 (up). */
+typedef struct face {
+    double r0, z0, r1, z1;
+    double centre_r, centre_z, radius; /* radius 0: a line */
+    double first, last;                /* angle of the normal at its lower and upper end */
+} face;
+
+/* A chain of faces with normals that only turn upwards, between the heights its component is clipped at. */
+typedef struct chain {
+    size_t first, count;
+    double lo, hi; /* -INFINITY / INFINITY: closed by itself */
+} chain;
+
+typedef struct outline {
+    face *faces;
+    size_t face_count, face_room;
+    chain *chains;
+    size_t chain_count, chain_room;
+    const swarf_cutter *cutter;
+    swarf_part_kind kind;
+    double z_lo, z_hi;
+    double tolerance; /* of the chords of hollow arcs */
+} outline;
+
+static const double tiny = 1e-9;
+/* Angles closer than this are one: CAD arcs meet their tangents no better. */
+static const double same_angle = 1e-6;
+
+static swarf_status add_face(outline *o, face f)
+{
+    if (hypot(f.r1 - f.r0, f.z1 - f.z0) < tiny) return SWARF_OK;
+    SWARF_TRY(swarf_array_reserve((void **)&o->faces, &o->face_room, o->face_count + 1, sizeof *o->faces));
+    o->faces[o->face_count++] = f;
+    return SWARF_OK;
+}
+
+static swarf_status add_line(outline *o, double r0, double z0, double r1, double z1)
+{
+    const double angle = fmax(-0.5 * M_PI, fmin(0.5 * M_PI, atan2(-(r1 - r0), z1 - z0)));
+    return add_face(o, (face){.r0 = r0, .z0 = z0, .r1 = r1, .z1 = z1, .first = angle, .last = angle});
+}
+
+/* Angle of a point on an arc as seen from its centre, kept in the range of a profile that only climbs. */
+static double arc_angle(const swarf_profile_piece *p, double r, double z)
+{
+    const double angle = atan2(z - p->centre_z, r - p->centre_r);
+    return fmax(-0.5 * M_PI, fmin(0.5 * M_PI, angle));
+}
+
+/* A convex arc is split where it is vertical, so that each piece belongs to the lower or the upper border. */
+static swarf_status add_convex_arc(outline *o, const swarf_profile_piece *p)
+{
+    const double from = arc_angle(p, p->r0, p->z0), to = arc_angle(p, p->r1, p->z1);
+    face f = {p->r0, p->z0, p->r1, p->z1, p->centre_r, p->centre_z, p->radius, from, to};
+    if (from < -same_angle && to > same_angle) {
+        face upper = f;
+        f.r1 = upper.r0 = p->centre_r + p->radius;
+        f.z1 = upper.z0 = p->centre_z;
+        f.last = upper.first = 0;
+        SWARF_TRY(add_face(o, f));
+        return add_face(o, upper);
+    }
+    return add_face(o, f);
+}
+
+/* A hollow arc becomes chords that leave it by no more than the tolerance; their ends lie on it. */
+static swarf_status add_hollow_arc(outline *o, const swarf_profile_piece *p)
+{
+    const double from = atan2(p->z0 - p->centre_z, p->r0 - p->centre_r);
+    double turn = atan2(p->z1 - p->centre_z, p->r1 - p->centre_r) - from; /* clockwise: negative */
+    if (turn > 0) turn -= 2 * M_PI;
+    const double step = 2 * acos(fmax(0.5, 1 - o->tolerance / p->radius));
+    const int count = (int)ceil(-turn / step);
+    double r = p->r0, z = p->z0;
+    for (int i = 1; i <= count; i++) {
+        const double angle = from + turn * i / count;
+        const double next_r = i == count ? p->r1 : p->centre_r + p->radius * cos(angle);
+        const double next_z = i == count ? p->z1 : p->centre_z + p->radius * sin(angle);
+        SWARF_TRY(add_line(o, r, z, next_r, next_z));
+        r = next_r;
+        z = next_z;
+    }
+    return SWARF_OK;
+}
+
+/* Radius of a chain's component at a height, by its faces alone; below 0 where there is nothing. */
+static double chain_radius(const outline *o, const chain *c, double z)
+{
+    double least = INFINITY;
+    for (size_t i = c->first; i < c->first + c->count; i++) {
+        const face *f = &o->faces[i];
+        double angle = f->first, cr = f->r0, cz = f->z0, radius = 0;
+        if (f->radius > 0) {
+            const double s = (z - f->centre_z) / f->radius;
+            angle = s >= 1 ? 0.5 * M_PI : s <= -1 ? -0.5 * M_PI : asin(s);
+            angle = fmax(f->first, fmin(f->last, angle));
+            cr = f->centre_r;
+            cz = f->centre_z;
+            radius = f->radius;
+        }
+        const double nr = cos(angle), nz = sin(angle);
+        const double rest = radius - nz * (z - cz);
+        if (nr < same_angle) {
+            if (rest < -tiny) return -1;
+        } else {
+            least = fmin(least, cr + rest / nr);
+        }
+    }
+    return least;
+}
+
+/* The height from `start` towards `end` up to which the chain's component stays inside the whole profile. */
+static double reach(const outline *o, const chain *c, double start, double end)
+{
+    /* fine enough for any profile with features above a five-hundredth of its length; nodes are seen besides */
+    enum { STEPS = 512 };
+    double inside = start;
+    for (int i = 1; i <= STEPS; i++) {
+        double z = start + (end - start) * i / STEPS;
+        const double own = chain_radius(o, c, z);
+        if (own < 0) return end > start ? INFINITY : -INFINITY; /* closed by its own faces */
+        const double slack = 1e-7 + 0.01 * o->tolerance;
+        if (own <= swarf_cutter_radius_at(o->cutter, o->kind, z) + slack) {
+            inside = z;
+            continue;
+        }
+        for (int k = 0; k < 60; k++) {
+            const double middle = 0.5 * (inside + z);
+            if (chain_radius(o, c, middle) <= swarf_cutter_radius_at(o->cutter, o->kind, middle) + slack) inside = middle;
+            else z = middle;
+        }
+        return inside;
+    }
+    return end;
+}
+
+/* Is all of chain a within chain b? Then a need not be swept. */
+static int contained(const outline *o, const chain *a, const chain *b)
+{
+    const double lo = fmax(o->z_lo, a->lo), hi = fmin(o->z_hi, a->hi);
+    for (int i = 0; i <= 256; i++) {
+        const double z = lo + (hi - lo) * i / 256;
+        const double own = chain_radius(o, a, z);
+        if (own <= 0) continue;
+        if (z < b->lo - tiny || z > b->hi + tiny || own > chain_radius(o, b, z) + tiny) return 0;
+    }
+    return 1;
+}
+
+static swarf_status collect_faces(outline *o, const swarf_cutter_part *part)
+{
+    for (size_t i = 0; i + 1 < part->node_count; i++) {
+        const swarf_profile_piece p = swarf_profile_piece_get(&part->nodes[i], &part->nodes[i + 1]);
+        if (p.radius == 0) SWARF_TRY(add_line(o, p.r0, p.z0, p.r1, p.z1));
+        else if (p.convex) SWARF_TRY(add_convex_arc(o, &p));
+        else SWARF_TRY(add_hollow_arc(o, &p));
+    }
+    return SWARF_OK;
+}
+
+static swarf_status collect_chains(outline *o, size_t first_face)
+{
+    for (size_t i = first_face; i < o->face_count;) {
+        size_t end = i + 1;
+        while (end < o->face_count && o->faces[end].first >= o->faces[end - 1].last - same_angle) end++;
+        SWARF_TRY(swarf_array_reserve((void **)&o->chains, &o->chain_room, o->chain_count + 1, sizeof *o->chains));
+        o->chains[o->chain_count++] = (chain){i, end - i, -INFINITY, INFINITY};
+        i = end;
+    }
+    return SWARF_OK;
+}
+
+static void drop_contained(outline *o)
+{
+    for (size_t i = 0; i < o->chain_count;) {
+        size_t j = 0;
+        while (j < o->chain_count && (j == i || !contained(o, &o->chains[i], &o->chains[j]))) j++;
+        if (j == o->chain_count) {
+            i++;
+            continue;
+        }
+        memmove(o->chains + i, o->chains + i + 1, (o->chain_count - i - 1) * sizeof *o->chains);
+        o->chain_count--;
+    }
+}
+
+static swarf_piece to_piece(const face *f, double voxel)
+{
+    swarf_piece p = {.is_arc = f->radius > 0, .upper = 0.5 * (f->first + f->last) > same_angle};
+    p.first_r = (float)fmax(0, cos(f->first));
+    p.first_z = (float)sin(f->first);
+    p.last_r = (float)fmax(0, cos(f->last));
+    p.last_z = (float)sin(f->last);
+    if (p.is_arc) {
+        p.centre_r = (float)(f->centre_r / voxel);
+        p.centre_z = (float)(f->centre_z / voxel);
+        p.radius = (float)(f->radius / voxel);
+    } else {
+        p.radius = (float)((cos(f->first) * f->r0 + sin(f->first) * f->z0) / voxel);
+    }
+    return p;
+}
+
+static swarf_status emit(const outline *o, double voxel, swarf_body *body)
+{
+    size_t pieces = 0;
+    for (size_t i = 0; i < o->chain_count; i++) pieces += o->chains[i].count + 2;
+    body->pieces = calloc(pieces ? pieces : 1, sizeof *body->pieces);
+    body->components = calloc(o->chain_count ? o->chain_count : 1, sizeof *body->components);
+    if (!body->pieces || !body->components) return swarf_fail(SWARF_ERROR_MEMORY, "cutter: out of memory");
+    for (size_t i = 0; i < o->chain_count; i++) {
+        const chain *c = &o->chains[i];
+        swarf_component *component = &body->components[body->component_count++];
+        component->first = body->piece_count;
+        for (size_t k = c->first; k < c->first + c->count; k++)
+            body->pieces[body->piece_count++] = to_piece(&o->faces[k], voxel);
+        if (isfinite(c->lo))
+            body->pieces[body->piece_count++] =
+                (swarf_piece){.radius = (float)(-c->lo / voxel), .first_z = -1, .last_z = -1};
+        if (isfinite(c->hi))
+            body->pieces[body->piece_count++] =
+                (swarf_piece){.radius = (float)(c->hi / voxel), .first_z = 1, .last_z = 1, .upper = 1};
+        component->count = body->piece_count - component->first;
+    }
+    return SWARF_OK;
+}
+
+/* Largest cylinder inside, by volume, among those that start and end at 65 evenly spaced heights. */
+static void find_core(const outline *o, double voxel, swarf_body *body)
+{
+    enum { LEVELS = 64 };
+    double radius[LEVELS + 1], best = 0;
+    for (int i = 0; i <= LEVELS; i++) {
+        const double z = o->z_lo + (o->z_hi - o->z_lo) * i / LEVELS;
+        radius[i] = 0;
+        for (size_t k = 0; k < o->chain_count; k++)
+            if (z >= o->chains[k].lo && z <= o->chains[k].hi) radius[i] = fmax(radius[i], chain_radius(o, &o->chains[k], z));
+    }
+    for (int i = 0; i < LEVELS; i++) {
+        double least = radius[i];
+        for (int j = i + 1; j <= LEVELS; j++) {
+            least = fmin(least, radius[j]);
+            if (least * least * (j - i) <= best) continue;
+            best = least * least * (j - i);
+            body->core_radius = (float)(least / voxel);
+            body->core_lo = (float)((o->z_lo + (o->z_hi - o->z_lo) * i / LEVELS) / voxel);
+            body->core_hi = (float)((o->z_lo + (o->z_hi - o->z_lo) * j / LEVELS) / voxel);
+        }
+    }
+}
+
+/* Bodies with a kernel of their own are recognised by their faces. */
+static void recognise(const outline *o, double voxel, swarf_body *body)
+{
+    body->kind = SWARF_BODY_GENERAL;
+    if (o->chain_count != 1) return;
+    const face *f = o->faces;
+    const size_t n = o->face_count;
+    const int side_and_top = n >= 2 && f[n - 2].radius == 0 && fabs(f[n - 2].first) < same_angle &&
+                             f[n - 1].radius == 0 && f[n - 1].first > 0.5 * M_PI - same_angle;
+    if (n == 3 && side_and_top && f[0].radius == 0 && f[0].first < -0.5 * M_PI + same_angle) {
+        body->kind = SWARF_BODY_CYLINDER;
+    } else if (n >= 2 && f[0].radius > 0 && fabs(f[0].centre_r) < tiny && f[0].first < -0.5 * M_PI + same_angle &&
+               fabs(f[0].last) < same_angle && (side_and_top || n == 2) && f[n - 1].radius == 0 &&
+               f[n - 1].first > 0.5 * M_PI - same_angle) {
+        body->kind = SWARF_BODY_BALL;
+        body->core_radius = body->radius;
+        body->core_lo = (float)(f[0].centre_z / voxel);
+        body->core_hi = body->z_hi;
+    }
+}
+
+swarf_status swarf_body_create(const swarf_cutter *cutter, swarf_part_kind kind, double voxel, swarf_body **out)
+{
+    swarf_body *body = calloc(1, sizeof *body);
+    if (!body) return swarf_fail(SWARF_ERROR_MEMORY, "cutter: out of memory");
+    /* half of the promised bound, the rest is left to rounding */
+    outline o = {.cutter = cutter, .kind = kind, .tolerance = 0.5 * SWARF_SWEEP_BOUND * voxel};
+    swarf_cutter_extent(cutter, kind, &o.z_lo, &o.z_hi);
+    swarf_status status = SWARF_OK;
+    for (size_t i = 0; i < cutter->part_count && status == SWARF_OK; i++) {
+        if (cutter->parts[i].kind != kind) continue;
+        const size_t first = o.face_count;
+        status = collect_faces(&o, &cutter->parts[i]);
+        if (status == SWARF_OK) status = collect_chains(&o, first);
+    }
+    if (status == SWARF_OK) {
+        for (size_t i = 0; i < o.chain_count && o.chain_count > 1; i++) {
+            chain *c = &o.chains[i];
+            const face *lowest = &o.faces[c->first], *highest = &o.faces[c->first + c->count - 1];
+            /* a flat face at the end closes the component there */
+            c->lo = lowest->last < -0.5 * M_PI + same_angle ? -INFINITY : reach(&o, c, lowest->z0, o.z_lo);
+            c->hi = highest->first > 0.5 * M_PI - same_angle ? INFINITY : reach(&o, c, highest->z1, o.z_hi);
+        }
+        drop_contained(&o);
+        body->radius = (float)(swarf_cutter_radius(cutter, kind) / voxel);
+        body->z_lo = (float)(o.z_lo / voxel);
+        body->z_hi = (float)(o.z_hi / voxel);
+        if (o.chain_count) {
+            find_core(&o, voxel, body);
+            recognise(&o, voxel, body);
+        }
+        status = emit(&o, voxel, body);
+    }
+    free(o.faces);
+    free(o.chains);
+    if (status != SWARF_OK) {
+        swarf_body_destroy(body);
+        return status;
+    }
+    *out = body;
+    return SWARF_OK;
+}
+
+void swarf_body_destroy(swarf_body *body)
+{
+    if (!body) return;
+    free(body->pieces);
+    free(body->components);
+    free(body);
+}

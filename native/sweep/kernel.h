@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* The inner loops of cutting, one table per instruction set. All variants do the same operations on the same sixteen
+ * lanes in the same order, without contraction, so that their results are the same bits. */
+#ifndef SWARF_SWEEP_KERNEL_H
+#define SWARF_SWEEP_KERNEL_H
+
+#include "sweep/body.h"
+#include "sweep/column.h"
+
+/** A block of voxel centres: middle (relative to the column's) and half extents. */
+typedef struct swarf_block {
+    float x, y, z;
+    float half, half_z;
+} swarf_block;
+
+/** A leaf being cut. */
+typedef struct swarf_leaf_cut {
+    float x, y, z;      /* low corner, relative to the column's middle */
+    float voxel;        /* mm */
+    float background;   /* mm */
+    int solid;          /* 1: all values are -background and `values` is not read */
+    float *values;      /* 512 values in mm, x * 64 + y * 8 + z; changed in place */
+    uint64_t mask[8];   /* out: values within the band */
+    float least, most;  /* out: least and greatest value */
+} swarf_leaf_cut;
+
+typedef struct swarf_kernel {
+    /** Keep of the tracks `in` those that can change a value in the block; 1: the block is all cut away. */
+    int (*cull)(const swarf_body *body, const swarf_column *column, const int32_t *in, size_t count,
+                const swarf_block *block, int32_t *out, size_t *out_count);
+    /** values = max(values, -sweep) over all tracks of the list; 0: nothing was within reach, outputs are not set. */
+    int (*cut)(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count,
+               swarf_leaf_cut *leaf);
+    /** Signed distances in voxels to the tracks at 4 x 4 columns of 8 voxels each, out[z * 16 + 4 * x + y], low corner
+     *  at (x, y, z) relative to the column's middle. */
+    void (*distance)(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count, float x,
+                     float y, float z, float out[128]);
+} swarf_kernel;
+
+/** The kernels of swarf_isa_current(). */
+const swarf_kernel *swarf_kernel_current(void);
+
+extern const swarf_kernel swarf_kernel_scalar;
+#if defined(SWARF_HAVE_X86)
+extern const swarf_kernel swarf_kernel_avx2;
+extern const swarf_kernel swarf_kernel_avx512;
+#endif
+
+#endif

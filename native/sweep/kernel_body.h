@@ -1,0 +1,535 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* The kernels themselves; each kernel_<isa>.c defines KERNEL_NAME, sets its instruction set and includes this.
+ *
+ * Lanes are 4 x 4 columns of voxels (lane = 4 * x + y); what needs a square root depends on (x, y) only and is done
+ * once for the eight voxels above each other, except where a track is tilted and the body general. */
+#include "sweep/kernel.h"
+#include "sweep/lanes.h"
+
+
+/* Farther than any voxel that counts, and safe to square. */
+static const float far_away = 1e18f;
+
+/* ---- distance in the plane ------------------------------------------------------------------------------------ */
+
+/* Distance from the lanes to an arc in the plane. Relative to its point nearest to the column's middle, so that large
+ * radii cost no digits: |p - c| - R = a / (1 + sqrt(1 + k a)) with a = 2 e.n + k e.e, k = 1 / R, e = p - base. */
+INLINE lanes arc_distance(const swarf_column *c, int32_t i, lanes x, lanes y)
+{
+    float *const *f = c->field;
+    const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
+    const float k = f[COLUMN_S0][i], nx = f[COLUMN_UX][i], ny = f[COLUMN_UY][i];
+    const lanes a = (ex * nx + ey * ny) * 2.0f + (ex * ex + ey * ey) * k;
+    const lanes circle = a / (root(maximum(a * k + 1.0f, all(0))) + 1.0f);
+    const lanes across = maximum(circle, all(0) - circle);
+    if (c->kind[i] & TRACK_ARC_FULL) return across;
+    const lanes from = ey * f[COLUMN_NAX][i] - ex * f[COLUMN_NAY][i] + f[COLUMN_A][i];
+    const lanes until = ex * f[COLUMN_NBY][i] - ey * f[COLUMN_NBX][i] + f[COLUMN_B][i];
+    const mask after = less(all(0), from), before = less(all(0), until);
+    const mask within = c->kind[i] & TRACK_ARC_MAJOR ? either(after, before) : both(after, before);
+    const lanes ax = x - f[COLUMN_AX][i], ay = y - f[COLUMN_AY][i], bx = x - f[COLUMN_BX][i], by = y - f[COLUMN_BY][i];
+    const lanes ends = root(minimum(ax * ax + ay * ay, bx * bx + by * by));
+    return pick(within, across, ends);
+}
+
+/* Distance from the lanes to the track's projection. */
+INLINE lanes plan_distance(const swarf_column *c, int32_t i, lanes x, lanes y)
+{
+    if (c->kind[i] & TRACK_ARC) return arc_distance(c, i, x, y);
+    float *const *f = c->field;
+    const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
+    const float ux = f[COLUMN_UX][i], uy = f[COLUMN_UY][i];
+    const lanes s = ex * ux + ey * uy, w = ey * ux - ex * uy;
+    const lanes beyond = s - clamped(s, all(f[COLUMN_S0][i]), all(f[COLUMN_S1][i]));
+    return root(beyond * beyond + w * w);
+}
+
+/* ---- culling ---------------------------------------------------------------------------------------------------- */
+
+/* Bounds of the distance to a swept cylinder (radius, lo .. hi above the tip) over a block, for sixteen tracks. */
+struct shaft_bounds {
+    lanes least, most;
+};
+
+struct sixteen {
+    lanes x, y, ux, uy, s0, s1, m, im, z, rise; /* x, y: middle of the block relative to the base */
+    lanes s, w;
+    lanes arc; /* plan distance of arcs, negative for lines */
+    mask is_arc;
+};
+
+INLINE lanes shaft_lateral(const struct sixteen *t, float radius)
+{
+    const lanes beyond = t->s - clamped(t->s, t->s0, t->s1);
+    const lanes line = root(beyond * beyond + t->w * t->w);
+    return pick(t->is_arc, t->arc, line) - radius;
+}
+
+/* Lower bound: beside the cylinder, below its lowest or above its highest point, or beyond one of the two slanted
+ * planes that hold its bottom and top. */
+INLINE lanes shaft_least(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi)
+{
+    const lanes bottom = t->z + lo, top = t->z + hi + t->rise;
+    const lanes lateral = shaft_lateral(t, radius) - reach;
+    const lanes s0 = pick(t->is_arc, all(0), t->s0), s1 = pick(t->is_arc, all(0), t->s1);
+    const lanes below = t->m * s0 + bottom - (b->z + b->half_z), above = (b->z - b->half_z) - (t->m * s1 + top);
+    const lanes support = t->m * t->im * reach + t->im * b->half_z;
+    const lanes s = pick(t->is_arc, all(0), t->s);
+    const lanes under = (t->m * (s - radius) + bottom - b->z) * t->im - support;
+    const lanes over = (all(b->z) - (t->m * (s + radius) + top)) * t->im - support;
+    return maximum(maximum(lateral, maximum(below, above)), maximum(under, over));
+}
+
+/* Upper bound: the deepest point of the block's side, bottom and top. */
+INLINE lanes shaft_most(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi)
+{
+    const lanes bottom = t->z + lo, top = t->z + hi + t->rise;
+    const lanes lateral = shaft_lateral(t, radius) + reach;
+    const lanes aside = maximum(t->w, all(0) - t->w) + reach;
+    const lanes half = root(maximum(all(0), all(radius * radius) - aside * aside)); /* half chord at the far side */
+    const lanes s0 = pick(t->is_arc, all(0), t->s0), s1 = pick(t->is_arc, all(0), t->s1);
+    const lanes highest_bottom = t->m * clamped(t->s + reach - half, s0, s1) + bottom;
+    const lanes lowest_top = t->m * clamped(t->s - reach + half, s0, s1) + top;
+    lanes below = highest_bottom - (b->z - b->half_z), above = (b->z + b->half_z) - lowest_top;
+    below = pick(less(below, all(0)), below * t->im, below);
+    above = pick(less(above, all(0)), above * t->im, above);
+    return maximum(lateral, maximum(below, above));
+}
+
+/* Distance from the middle of the block to sixteen tracks of the ball's centre, less the radius. */
+INLINE lanes capsule_distance(const swarf_column *c, const int32_t *at, const struct sixteen *t, const swarf_block *b,
+                              float radius, float centre)
+{
+    float *const *f = c->field;
+    const lanes dx = gather(f[COLUMN_DX], at), dy = gather(f[COLUMN_DY], at), dz = gather(f[COLUMN_DZ], at);
+    const lanes ez = all(b->z) - t->z - centre;
+    const lanes q = clamped(t->x * dx + t->y * dy + ez * dz, gather(f[COLUMN_T0], at), gather(f[COLUMN_T1], at));
+    const lanes fx = t->x - q * dx, fy = t->y - q * dy, fz = ez - q * dz;
+    const lanes line = root(fx * fx + fy * fy + fz * fz);
+    const lanes arc = root(t->arc * t->arc + ez * ez);
+    return pick(t->is_arc, arc, line) - radius;
+}
+
+INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, const swarf_block *b)
+{
+    float *const *f = c->field;
+    struct sixteen t;
+    t.x = all(b->x) - gather(f[COLUMN_X], at);
+    t.y = all(b->y) - gather(f[COLUMN_Y], at);
+    t.ux = gather(f[COLUMN_UX], at);
+    t.uy = gather(f[COLUMN_UY], at);
+    t.s0 = gather(f[COLUMN_S0], at);
+    t.s1 = gather(f[COLUMN_S1], at);
+    t.m = gather(f[COLUMN_M], at);
+    t.im = gather(f[COLUMN_IM], at);
+    t.z = gather(f[COLUMN_Z], at);
+    t.rise = gather(f[COLUMN_RISE], at);
+    t.s = t.x * t.ux + t.y * t.uy;
+    t.w = t.y * t.ux - t.x * t.uy;
+    t.arc = all(-1);
+    if (c->arcs) {
+        float plan[LANES];
+        for (int k = 0; k < LANES; k++) {
+            plan[k] = -1;
+            if (c->kind[at[k]] & TRACK_ARC) plan[k] = arc_distance(c, at[k], all(b->x), all(b->y))[0];
+        }
+        t.arc = load(plan);
+    }
+    t.is_arc = less(all(-0.5f), t.arc);
+    return t;
+}
+
+static int cull(const swarf_body *body, const swarf_column *c, const int32_t *in, size_t count, const swarf_block *b,
+                int32_t *out, size_t *out_count)
+{
+    const float reach = b->half * 1.41421357f; /* from the middle of the block to its vertical edges */
+    const float corner = sqrtf(reach * reach + b->half_z * b->half_z);
+    const int ball = body->kind == SWARF_BODY_BALL;
+    const float lo = ball ? body->core_lo : body->z_lo;
+    float *bound = c->bound;
+    lanes best = all(far_away);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i += LANES) {
+        const int32_t *at = in + i;
+        const struct sixteen t = gather_tracks(c, at, b);
+        lanes least = shaft_least(&t, b, reach, body->radius, lo, body->z_hi);
+        lanes most = shaft_most(&t, b, reach, body->core_radius, body->core_lo, body->core_hi);
+        if (ball) {
+            const lanes capsule = capsule_distance(c, at, &t, b, body->radius, body->core_lo);
+            least = minimum(least, capsule - corner);
+            most = minimum(most, capsule + corner);
+        }
+        const unsigned valid = count - i >= LANES ? 0xffffu : (1u << (count - i)) - 1;
+        if (bits(less(most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
+        unsigned keep = bits(less(least, all(SWARF_HALF_WIDTH))) & valid;
+        if (!keep) continue;
+        float lows[LANES], highs[LANES];
+        store(lows, least);
+        store(highs, most);
+        for (; keep; keep &= keep - 1) {
+            const int lane = __builtin_ctz(keep);
+            out[kept] = at[lane];
+            bound[kept++] = lows[lane];
+            best = minimum(best, all(highs[lane]));
+        }
+    }
+    /* A track that is everywhere farther than another one is anywhere does not matter. */
+    if (kept > 1) {
+        const float limit = least_lane(best);
+        size_t left = 0;
+        for (size_t i = 0; i < kept; i++)
+            if (bound[i] <= limit) out[left++] = out[i];
+        kept = left;
+    }
+    for (int i = 0; i < COLUMN_SLACK; i++) out[kept + (size_t)i] = kept ? out[0] : 0;
+    *out_count = kept;
+    return 0;
+}
+
+/* ---- distance to one track, 16 columns x 8 voxels ---------------------------------------------------------------- */
+
+/* Cylinders on lines. Tilted: side, lowest bottom, and the slanted surface that the trailing edge of the bottom leaves,
+ * scaled to unit gradient; likewise at the top. Never switched between, so that the band has no tears. */
+INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
+                          lanes best[8])
+{
+    float *const *f = c->field;
+    const float radius = body->radius, m = f[COLUMN_M][i];
+    const float bottom = f[COLUMN_Z][i] + body->z_lo - z0, length = body->z_hi - body->z_lo + f[COLUMN_RISE][i];
+    const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
+    const float ux = f[COLUMN_UX][i], uy = f[COLUMN_UY][i], s0 = f[COLUMN_S0][i], s1 = f[COLUMN_S1][i];
+    const lanes s = ex * ux + ey * uy, w = ey * ux - ex * uy;
+    const lanes beyond = s - clamped(s, all(s0), all(s1)), w2 = w * w;
+    const lanes side = root(beyond * beyond + w2) - radius;
+    const float low = bottom + m * s0, high = bottom + length + m * s1;
+    if (m == 0) {
+        for (int z = 0; z < 8; z++) {
+            const float below = low - (float)z, above = (float)z - high;
+            best[z] = minimum(best[z], maximum(side, all(below > above ? below : above)));
+        }
+        return;
+    }
+    const lanes chord2 = maximum(all(0), all(radius * radius) - w2), chord = root(chord2);
+    const lanes scale = chord / root(chord2 + m * m * radius * radius);
+    const lanes under = ((s - chord) * m + bottom) * scale;
+    const lanes over = ((s + chord) * m + (bottom + length)) * scale;
+    for (int z = 0; z < 8; z++) {
+        const float below = low - (float)z, above = (float)z - high;
+        const lanes ends = maximum(side, all(below > above ? below : above));
+        const lanes height = scale * (float)z;
+        best[z] = minimum(best[z], maximum(ends, maximum(under - height, height - over)));
+    }
+}
+
+/* Balls on lines: the shaft from the centre up, and the capsule's squared distance, rooted once at the end. */
+INLINE void ball_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
+                      lanes best[8], lanes capsule[8])
+{
+    float *const *f = c->field;
+    const float centre = f[COLUMN_Z][i] + body->core_lo - z0, m = f[COLUMN_M][i];
+    const float lowest = centre + m * f[COLUMN_S0][i], highest = centre + m * f[COLUMN_S1][i] + f[COLUMN_RISE][i];
+    if (highest + SWARF_HALF_WIDTH > 0) {
+        const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
+        const lanes along = ex * f[COLUMN_DX][i] + ey * f[COLUMN_DY][i], flat = ex * ex + ey * ey;
+        const lanes t0 = all(f[COLUMN_T0][i]), t1 = all(f[COLUMN_T1][i]);
+        const float dz = f[COLUMN_DZ][i];
+        for (int z = 0; z < 8; z++) {
+            const float ez = (float)z - centre;
+            const lanes q = along + ez * dz;
+            const lanes t = clamped(q, t0, t1);
+            capsule[z] = minimum(capsule[z], t * (t - (q + q)) + (flat + ez * ez));
+        }
+    }
+    if (lowest - SWARF_HALF_WIDTH < 7) {
+        const swarf_body shaft = {.radius = body->radius, .z_lo = body->core_lo, .z_hi = body->z_hi};
+        cylinder_line(&shaft, c, i, x, y, z0, best);
+    }
+}
+
+/* One piece over a whole column of eight voxels at plan distance rho; heights relative to the tip start at `base`. */
+INLINE void level_piece(const swarf_piece *p, lanes rho, float base, lanes value[8])
+{
+    if (!p->is_arc) {
+        const lanes across = rho * p->first_r - p->radius;
+        for (int z = 0; z < 8; z++) value[z] = maximum(value[z], across + p->first_z * (base + (float)z));
+        return;
+    }
+    const lanes v = rho - p->centre_r, v2 = v * v;
+    for (int z = 0; z < 8; z++) {
+        const float h = base + (float)z - p->centre_z;
+        const mask after = less(v * p->first_z, all(h * p->first_r)), before = less(all(h * p->last_r), v * p->last_z);
+        const lanes ends = maximum(v * p->first_r + h * p->first_z, v * p->last_r + h * p->last_z);
+        value[z] = maximum(value[z], pick(both(after, before), root(v2 + h * h), ends) - p->radius);
+    }
+}
+
+/* Any body where the height of the tip does not depend on the place: level lines, level arcs, plunges. The least plan
+ * distance is the nearest moment; of a plunge the lower border counts at its low end, the upper at its high end. */
+INLINE void general_level(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
+                          lanes best[8])
+{
+    float *const *f = c->field;
+    const lanes rho = plan_distance(c, i, x, y);
+    const float low = z0 - f[COLUMN_Z][i], high = low - f[COLUMN_RISE][i];
+    for (size_t k = 0; k < body->component_count; k++) {
+        const swarf_component *component = &body->components[k];
+        lanes value[8];
+        for (int z = 0; z < 8; z++) value[z] = all(-far_away);
+        for (size_t p = component->first; p < component->first + component->count; p++)
+            level_piece(&body->pieces[p], rho, body->pieces[p].upper ? high : low, value);
+        for (int z = 0; z < 8; z++) best[z] = minimum(best[z], value[z]);
+    }
+}
+
+/* phi of a component at moment t of a tilted line, its slope in t and its gradient across the line's frame. */
+struct moment {
+    lanes value, slope, along, across, up;
+};
+
+struct tilt {
+    lanes s, w2, w;  /* of the columns, relative to the base */
+    lanes height;    /* of the voxel above the tip at t = 0 */
+    float run, rise; /* per unit of t */
+};
+
+INLINE struct moment at_moment(const swarf_body *body, const swarf_component *component, const struct tilt *tilt, lanes t)
+{
+    const lanes u = tilt->s - t * tilt->run, height = tilt->height - t * tilt->rise;
+    const lanes rho = root(u * u + tilt->w2);
+    const lanes inverse = all(1) / maximum(rho, all(1e-9f));
+    lanes value = all(-far_away), nr = all(0), nz = all(0);
+    for (size_t k = component->first; k < component->first + component->count; k++) {
+        const swarf_piece *p = &body->pieces[k];
+        if (!p->is_arc) {
+            const lanes own = rho * p->first_r + height * p->first_z - p->radius;
+            const mask more = less(value, own);
+            value = pick(more, own, value);
+            nr = pick(more, all(p->first_r), nr);
+            nz = pick(more, all(p->first_z), nz);
+            continue;
+        }
+        const lanes v = rho - p->centre_r, h = height - p->centre_z;
+        const lanes first = v * p->first_r + h * p->first_z, last = v * p->last_r + h * p->last_z;
+        const mask within = both(less(v * p->first_z, h * p->first_r), less(h * p->last_r, v * p->last_z));
+        const lanes length = root(v * v + h * h), unit = all(1) / maximum(length, all(1e-9f));
+        const mask upper = less(first, last);
+        const lanes own = pick(within, length, pick(upper, last, first)) - p->radius;
+        const mask more = less(value, own);
+        value = pick(more, own, value);
+        nr = pick(more, pick(within, v * unit, pick(upper, all(p->last_r), all(p->first_r))), nr);
+        nz = pick(more, pick(within, h * unit, pick(upper, all(p->last_z), all(p->first_z))), nz);
+    }
+    struct moment m = {.value = value, .along = nr * u * inverse, .across = nr * tilt->w * inverse, .up = nz};
+    m.slope = all(0) - (m.along * tilt->run + m.up * tilt->rise);
+    return m;
+}
+
+INLINE struct moment pick_moment(mask m, struct moment a, struct moment b)
+{
+    return (struct moment){pick(m, a.value, b.value), pick(m, a.slope, b.slope), pick(m, a.along, b.along),
+                           pick(m, a.across, b.across), pick(m, a.up, b.up)};
+}
+
+/* Where the tangents at both ends of the bracket meet; a lower bound of the minimum lies there. */
+INLINE lanes tangents_meet(lanes a, lanes b, const struct moment *at_a, const struct moment *at_b, lanes *bound)
+{
+    const lanes turn = maximum(at_b->slope - at_a->slope, all(1e-12f));
+    const lanes step = (at_a->value - at_b->value + at_b->slope * (b - a)) / turn;
+    const lanes t = clamped(a + step, a, b);
+    *bound = at_a->value + at_a->slope * (t - a);
+    return t;
+}
+
+/* Stop when the minimum is known to this many voxels. */
+static const float settled = 2e-5f;
+/* Alternating bisection and tangents halves the bracket at least every other step. */
+enum { SEARCH_STEPS = 28 };
+
+/* Any body on a tilted line: phi is convex in t, its minimum is bracketed by the sign of its slope and closed in on by
+ * bisection and by the crossing of the tangents (exact at once where two pieces meet). The gradient of the minimum is the
+ * mix of both ends' that stands across the track; dividing by its length makes edges sweep with unit gradient. */
+INLINE void general_tilted(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
+                           lanes best[8])
+{
+    float *const *f = c->field;
+    const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
+    const float ux = f[COLUMN_UX][i], uy = f[COLUMN_UY][i];
+    struct tilt tilt = {.s = ex * ux + ey * uy, .w = ey * ux - ex * uy, .run = f[COLUMN_IM][i], .rise = f[COLUMN_DZ][i]};
+    tilt.w2 = tilt.w * tilt.w;
+    /* only while the cutter is near: beside it and between its lowest and highest point, with the band and a margin */
+    const float margin = SWARF_HALF_WIDTH + 1, reach = body->radius + margin;
+    const lanes from = maximum(all(f[COLUMN_T0][i]), (tilt.s - reach) / tilt.run);
+    const lanes until = minimum(all(f[COLUMN_T1][i]), (tilt.s + reach) / tilt.run);
+    for (int z = 0; z < 8; z++) {
+        tilt.height = all(z0 + (float)z - f[COLUMN_Z][i]);
+        const lanes first = maximum(from, (tilt.height - (body->z_hi + margin)) / tilt.rise);
+        const lanes last = minimum(until, (tilt.height - (body->z_lo - margin)) / tilt.rise);
+        const mask never = less(last, first);
+        if (bits(never) == 0xffffu) continue;
+        for (size_t k = 0; k < body->component_count; k++) {
+            const swarf_component *component = &body->components[k];
+            lanes a = first, b = maximum(first, last);
+            struct moment at_a = at_moment(body, component, &tilt, a), at_b = at_moment(body, component, &tilt, b);
+            const mask falls = less(at_a.slope, all(0)), climbs = less(all(0), at_b.slope), inner = both(falls, climbs);
+            lanes t = a, bound;
+            for (int step = 0; step < SEARCH_STEPS; step++) {
+                t = tangents_meet(a, b, &at_a, &at_b, &bound);
+                const lanes gap = pick(both(inner, less(last, first)), all(0), minimum(at_a.value, at_b.value) - bound);
+                if (!(bits(both(inner, less(all(settled), gap))))) break;
+                if (step & 1) t = (a + b) * 0.5f;
+                const struct moment at_t = at_moment(body, component, &tilt, t);
+                const mask left = less(at_t.slope, all(0));
+                a = pick(left, t, a);
+                b = pick(left, b, t);
+                at_a = pick_moment(left, at_t, at_a);
+                at_b = pick_moment(left, at_b, at_t);
+            }
+            const lanes turn = maximum(at_b.slope - at_a.slope, all(1e-12f));
+            const lanes part = clamped((all(0) - at_a.slope) / turn, all(0), all(1));
+            const lanes along = at_a.along + (at_b.along - at_a.along) * part;
+            const lanes across = at_a.across + (at_b.across - at_a.across) * part;
+            const lanes up = at_a.up + (at_b.up - at_a.up) * part;
+            /* deep inside, opposite sides of the cutter cancel: no more than tenfold */
+            const lanes length = maximum(root(along * along + across * across + up * up), all(0.1f));
+            tangents_meet(a, b, &at_a, &at_b, &bound);
+            lanes value = pick(inner, bound / minimum(length, all(1)), pick(falls, at_b.value, at_a.value));
+            value = pick(never, all(far_away), value);
+            best[z] = minimum(best[z], value);
+        }
+    }
+}
+
+/* ---- all tracks of a list ---------------------------------------------------------------------------------------- */
+
+INLINE void distance_group(const swarf_body *body, const swarf_column *c, const int32_t *list, size_t count, lanes x,
+                           lanes y, float z0, float out[128])
+{
+    lanes best[8], capsule[8];
+    for (int z = 0; z < 8; z++) {
+        best[z] = all(far_away);
+        capsule[z] = all(far_away);
+    }
+    const int ball = body->kind == SWARF_BODY_BALL;
+    for (size_t k = 0; k < count; k++) {
+        const int32_t i = list[k];
+        const int kind = c->kind[i];
+        if (body->kind == SWARF_BODY_GENERAL || kind & TRACK_ARC) {
+            if (kind & TRACK_TILTED) general_tilted(body, c, i, x, y, z0, best);
+            else general_level(body, c, i, x, y, z0, best);
+        } else if (ball) {
+            ball_line(body, c, i, x, y, z0, best, capsule);
+        } else {
+            cylinder_line(body, c, i, x, y, z0, best);
+        }
+    }
+    for (int z = 0; z < 8; z++) {
+        lanes value = best[z];
+        if (ball) value = minimum(value, root(maximum(capsule[z], all(0))) - body->radius);
+        store(out + z * LANES, value);
+    }
+}
+
+static const float lane_x[LANES] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+static const float lane_y[LANES] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+
+static void distance(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count, float x,
+                     float y, float z, float out[128])
+{
+    distance_group(body, column, list, count, load(lane_x) + x, load(lane_y) + y, z, out);
+}
+
+/* What becomes of the sixteen columns of a group. */
+struct leaf_state {
+    octet least, most;
+    unsigned char mask[64];
+};
+
+INLINE void put(swarf_leaf_cut *leaf, struct leaf_state *state, int place, octet value)
+{
+    store8(leaf->values + place * 8, value);
+    state->least = minimum8(state->least, value);
+    state->most = maximum8(state->most, value);
+    state->mask[place] = (unsigned char)within8(value, all8(leaf->background));
+}
+
+/* Place of lane `lane` of the group whose low corner is (gx, gy): its column's number in the leaf. */
+INLINE int column_of(int gx, int gy, int lane)
+{
+    return (gx + lane / 4) * 8 + gy + lane % 4;
+}
+
+INLINE void keep_group(swarf_leaf_cut *leaf, struct leaf_state *state, int gx, int gy)
+{
+    for (int lane = 0; lane < LANES; lane++) {
+        const int place = column_of(gx, gy, lane);
+        put(leaf, state, place, leaf->solid ? all8(-leaf->background) : load8(leaf->values + place * 8));
+    }
+}
+
+INLINE void remove_group(swarf_leaf_cut *leaf, struct leaf_state *state, int gx, int gy)
+{
+    for (int lane = 0; lane < LANES; lane++) put(leaf, state, column_of(gx, gy, lane), all8(leaf->background));
+}
+
+/* values = max(values, -found), turned from sixteen columns side by side to columns of eight voxels. */
+INLINE void merge_group(swarf_leaf_cut *leaf, struct leaf_state *state, int gx, int gy, const float found[128])
+{
+    const octet outside = all8(leaf->background), inside = all8(-leaf->background), scale = all8(-leaf->voxel);
+    for (int half = 0; half < LANES; half += 8) {
+        octet row[8];
+        for (int z = 0; z < 8; z++) row[z] = load8(found + z * LANES + half);
+        transpose8(row);
+        for (int k = 0; k < 8; k++) {
+            const int place = column_of(gx, gy, half + k);
+            const octet old = leaf->solid ? inside : load8(leaf->values + place * 8);
+            put(leaf, state, place, maximum8(old, minimum8(row[k] * scale, outside)));
+        }
+    }
+}
+
+/* Enough tracks that looking at each quarter of the leaf on its own pays. */
+enum { FEW = 3 };
+
+static int cut(const swarf_body *body, const swarf_column *c, const int32_t *list, size_t count, swarf_leaf_cut *leaf)
+{
+    struct leaf_state state = {.least = all8(leaf->background), .most = all8(-leaf->background)};
+    _Alignas(64) float found[128];
+    int touched = 0;
+    for (int gx = 0; gx < 8; gx += 4) {
+        for (int gy = 0; gy < 8; gy += 4) {
+            const float x = leaf->x + (float)gx, y = leaf->y + (float)gy;
+            const int32_t *near = list;
+            size_t near_count = count;
+            int removed = 0;
+            if (count > FEW) {
+                const swarf_block block = {x + 1.5f, y + 1.5f, leaf->z + 3.5f, 1.5f, 3.5f};
+                removed = cull(body, c, list, count, &block, c->list[4], &near_count);
+                near = c->list[4];
+            }
+            if (removed) {
+                remove_group(leaf, &state, gx, gy);
+            } else if (near_count == 0) {
+                keep_group(leaf, &state, gx, gy);
+                continue;
+            } else {
+                distance_group(body, c, near, near_count, load(lane_x) + x, load(lane_y) + y, leaf->z, found);
+                merge_group(leaf, &state, gx, gy, found);
+            }
+            touched = 1;
+        }
+    }
+    if (!touched) return 0;
+    memcpy(leaf->mask, state.mask, sizeof state.mask);
+    float lows[8], highs[8];
+    store8(lows, state.least);
+    store8(highs, state.most);
+    leaf->least = lows[0];
+    leaf->most = highs[0];
+    for (int k = 1; k < 8; k++) {
+        leaf->least = lows[k] < leaf->least ? lows[k] : leaf->least;
+        leaf->most = highs[k] > leaf->most ? highs[k] : leaf->most;
+    }
+    return 1;
+}
+
+const swarf_kernel KERNEL_NAME = {cull, cut, distance};

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "sweep/track.h"
+
+#include "base/memory.h"
+#include "base/status.h"
+#include "swarf/sweep.h"
+
+#include <math.h>
+#include <stdint.h>
+
+/* A line steeper than this (run over rise) is swept as vertical: over the tallest stock (a million voxels) it leaves
+ * its track by a thousandth of a voxel. */
+static const double vertical = 1e-9;
+/* Steps of less than this many voxels between the ends of an arc are level, radii that differ by less are equal. */
+static const double level = 1e-4;
+
+static swarf_status append(swarf_track_list *list, const swarf_track *track)
+{
+    SWARF_TRY(swarf_array_reserve((void **)&list->tracks, &list->room, list->count + 1, sizeof *track));
+    list->tracks[list->count++] = *track;
+    return SWARF_OK;
+}
+
+static swarf_status append_line(swarf_track_list *list, const double a[3], const double b[3])
+{
+    const double *low = b[2] < a[2] ? b : a, *high = b[2] < a[2] ? a : b;
+    swarf_track track = {.point = {low[0], low[1], low[2]}, .ux = 1, .rise = high[2] - low[2]};
+    const double dx = high[0] - low[0], dy = high[1] - low[1], run = hypot(dx, dy);
+    if (run > vertical * track.rise) {
+        track.run = run;
+        track.ux = dx / run;
+        track.uy = dy / run;
+    }
+    return append(list, &track);
+}
+
+static void to_index(const double xyz[3], const double origin[3], double voxel, double ijk[3])
+{
+    for (int k = 0; k < 3; k++) ijk[k] = (xyz[k] - origin[k]) / voxel;
+}
+
+static swarf_status append_chords(swarf_track_list *list, const swarf_path *path, const double origin[3], double voxel,
+                                  double radius)
+{
+    /* a chord of angle s lies inside its arc by radius * (1 - cos(s / 2)) */
+    const double inside = fmin(1, 0.8 * SWARF_SWEEP_BOUND / fmax(radius, 1e-9));
+    const double step = fmin(0.5 * M_PI, 2 * acos(1 - inside));
+    const double steps = ceil(fabs(path->arc.angle_rad) / step);
+    if (!(steps < 1e8)) return swarf_fail(SWARF_ERROR_ARGUMENT, "arc: %g turns of radius %g voxels are too many",
+                                          path->arc.angle_rad / (2 * M_PI), radius);
+    const size_t count = steps < 1 ? 1 : (size_t)steps;
+    double xyz[3], a[3], b[3];
+    to_index(path->start, origin, voxel, a);
+    for (size_t i = 1; i <= count; i++) {
+        swarf_path_point(path, (double)i / (double)count, xyz);
+        to_index(xyz, origin, voxel, b);
+        SWARF_TRY(append_line(list, a, b));
+        for (int k = 0; k < 3; k++) a[k] = b[k];
+    }
+    return SWARF_OK;
+}
+
+swarf_status swarf_track_append(swarf_track_list *list, const swarf_path *path, const double origin[3], double voxel)
+{
+    if (!path->has_motion) return SWARF_OK;
+    double a[3], b[3];
+    to_index(path->start, origin, voxel, a);
+    to_index(path->end, origin, voxel, b);
+    for (int k = 0; k < 3; k++)
+        SWARF_REQUIRE(isfinite(a[k]) && isfinite(b[k]), "path: coordinate %c is not finite", "xyz"[k]);
+    if (!path->is_arc) return append_line(list, a, b);
+
+    SWARF_REQUIRE(isfinite(path->arc.angle_rad), "path: the angle of an arc is not finite");
+    static const int axes[3][2] = {{0, 1}, {2, 0}, {1, 2}}; /* in-plane coordinates of XY, ZX, YZ */
+    const int *axis = axes[path->arc.plane];
+    double centre[3];
+    to_index(path->arc.centre, origin, voxel, centre);
+    const double radius = hypot(a[axis[0]] - centre[axis[0]], a[axis[1]] - centre[axis[1]]);
+    const double end_radius = hypot(b[axis[0]] - centre[axis[0]], b[axis[1]] - centre[axis[1]]);
+    if (path->arc.plane != SWARF_PLANE_XY || fabs(a[2] - b[2]) > level || fabs(radius - end_radius) > level ||
+        radius < level)
+        return append_chords(list, path, origin, voxel, fmax(radius, end_radius));
+
+    const double turn = fabs(path->arc.angle_rad);
+    const double *first = path->arc.angle_rad < 0 ? b : a;
+    const swarf_track track = {.point = {a[0], a[1], a[2]},
+                               .ux = 1,
+                               .centre = {centre[0], centre[1]},
+                               .radius = radius,
+                               .from = atan2(first[1] - centre[1], first[0] - centre[0]),
+                               .turn = fmin(turn, 2 * M_PI),
+                               .is_arc = 1};
+    return append(list, &track);
+}
