@@ -268,9 +268,12 @@ static void test_refusals(void)
     CHECK_FAILS(swarf_program_path(program, 0, &path), SWARF_ERROR_ARGUMENT, "move 0 of 0");
     CHECK_FAILS(swarf_program_create((double[3]){0, INFINITY, 0}, &program), SWARF_ERROR_ARGUMENT, "start Y");
     CHECK(swarf_program_move_count(program) == 0 && swarf_program_arc_count(program) == 0); /* refusals leave nothing */
+    /* ends on one ray from the centre, a little apart: a whole turn, not none */
+    CHECK_OK(swarf_program_add_arc(program, (double[3]){10.005, 0, 0}, o, SWARF_PLANE_XY, 1, 1, 1, 1));
+    CHECK_NEAR(swarf_program_arcs(program)[0].angle_rad, 2 * pi, 1e-12);
     CHECK_OK(swarf_program_add_arc(program, just, o, SWARF_PLANE_XY, 1, 1, 1, 1));
     double nowhere[3];
-    swarf_program_move_start(program, 1, nowhere);
+    swarf_program_move_start(program, 2, nowhere);
     CHECK(isnan(nowhere[0]));
     swarf_program_release(program);
     swarf_program_release(NULL);
