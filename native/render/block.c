@@ -175,8 +175,7 @@ static int intersect_cell(const cell_field *f, const double p[3], double t_in, d
         f->vz + f->vxz * q[0] + f->vyz * q[1] + f->vxyz * q[0] * q[1],
     };
     const double length = sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
-    for (int axis = 0; axis < 3; axis++)
-        ray->normal[axis] = (float)(length > 0 ? gradient[axis] / length : -d[axis]);
+    for (int axis = 0; axis < 3; axis++) ray->normal[axis] = (float)(length > 0 ? gradient[axis] / length : -d[axis]);
     ray->t = t;
     ray->block = number;
     return 1;
@@ -225,8 +224,7 @@ int swarf_block_intersect(const swarf_block *block, uint32_t number, swarf_ray *
             float corner[8];
             gather(block, cell, corner);
             double p[3];
-            for (int i = 0; i < 3; i++)
-                p[i] = (ray->origin[i] - (block->ijk[i] + cell[i])) + t * ray->direction[i];
+            for (int i = 0; i < 3; i++) p[i] = (ray->origin[i] - (block->ijk[i] + cell[i])) + t * ray->direction[i];
             const cell_field field = expand(corner);
             if (intersect_cell(&field, p, t, fmax(t, t_next[axis]), number, ray)) return 1;
         }

@@ -58,8 +58,8 @@ swarf_status swarf_camera_frame_make(const swarf_camera *camera, double aspect, 
     cross(frame.right, frame.forward, frame.up);
     frame.perspective = camera->perspective != 0;
     if (frame.perspective) {
-        SWARF_REQUIRE(camera->fov_deg > 0 && camera->fov_deg < 180, "camera: opening angle %g is not in 0 .. 180 degrees",
-                      camera->fov_deg);
+        SWARF_REQUIRE(camera->fov_deg > 0 && camera->fov_deg < 180,
+                      "camera: opening angle %g is not in 0 .. 180 degrees", camera->fov_deg);
         frame.half[1] = tan(0.5 * camera->fov_deg * radians);
     } else {
         SWARF_REQUIRE(isfinite(camera->height_mm) && camera->height_mm > 0, "camera: height %g mm is not positive",
@@ -85,12 +85,9 @@ swarf_status swarf_camera_fit(swarf_view view, int perspective, const swarf_box 
     static const struct {
         double forward[3], up[3];
     } presets[SWARF_VIEW_COUNT] = {
-        [SWARF_VIEW_ISOMETRIC] = {{-1, 1, -1}, {0, 0, 1}},
-        [SWARF_VIEW_TOP] = {{0, 0, -1}, {0, 1, 0}},
-        [SWARF_VIEW_BOTTOM] = {{0, 0, 1}, {0, -1, 0}},
-        [SWARF_VIEW_FRONT] = {{0, 1, 0}, {0, 0, 1}},
-        [SWARF_VIEW_REAR] = {{0, -1, 0}, {0, 0, 1}},
-        [SWARF_VIEW_LEFT] = {{1, 0, 0}, {0, 0, 1}},
+        [SWARF_VIEW_ISOMETRIC] = {{-1, 1, -1}, {0, 0, 1}}, [SWARF_VIEW_TOP] = {{0, 0, -1}, {0, 1, 0}},
+        [SWARF_VIEW_BOTTOM] = {{0, 0, 1}, {0, -1, 0}},     [SWARF_VIEW_FRONT] = {{0, 1, 0}, {0, 0, 1}},
+        [SWARF_VIEW_REAR] = {{0, -1, 0}, {0, 0, 1}},       [SWARF_VIEW_LEFT] = {{1, 0, 0}, {0, 0, 1}},
         [SWARF_VIEW_RIGHT] = {{-1, 0, 0}, {0, 0, 1}},
     };
     SWARF_REQUIRE(box && out, "camera: box or output missing");

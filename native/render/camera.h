@@ -16,7 +16,8 @@ typedef struct swarf_camera_frame {
     int perspective;
 } swarf_camera_frame;
 
-/** SWARF_ERROR_ARGUMENT: a number that is not finite, eye at target, `up` along the view, height or angle out of range. */
+/** SWARF_ERROR_ARGUMENT: a number that is not finite, eye at target, `up` along the view, height or angle out of range.
+ */
 swarf_status swarf_camera_frame_make(const swarf_camera *camera, double aspect, swarf_camera_frame *out);
 
 /** Ray through (x, y) of the picture, each -1 .. 1, x to the right and y upwards. */

@@ -48,7 +48,8 @@ RTCDevice shared_device()
 swarf_status fail_embree(const char *what)
 {
     const RTCError error = rtcGetDeviceError(shared_device());
-    if (error == RTC_ERROR_OUT_OF_MEMORY) return swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory in Embree (%s)", what);
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+        return swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory in Embree (%s)", what);
     return swarf_fail(SWARF_ERROR_INTERNAL, "scene: Embree error %d (%s)", static_cast<int>(error), what);
 }
 

@@ -61,8 +61,7 @@ static uint8_t to_srgb(float linear)
 static void resolve(const float sum[4], float weight, uint8_t out[4])
 {
     const float alpha = sum[3] * weight;
-    for (int channel = 0; channel < 3; channel++)
-        out[channel] = alpha > 0 ? to_srgb(sum[channel] * weight / alpha) : 0;
+    for (int channel = 0; channel < 3; channel++) out[channel] = alpha > 0 ? to_srgb(sum[channel] * weight / alpha) : 0;
     out[3] = (uint8_t)(fminf(fmaxf(alpha, 0), 1) * 255 + 0.5f);
 }
 

@@ -59,7 +59,7 @@ static const float *slot_values(const builder *b, const int32_t at[3])
     const float *leaf = swarf_tree_leaf(b->tree, node, slot);
     if (leaf) return leaf;
     return layout->occupied[node * SWARF_NODE_WORDS + slot / 64] >> (slot % 64) & 1 ? b->scene->inside
-                                                                                   : b->scene->outside;
+                                                                                    : b->scene->outside;
 }
 
 static int is_tile(const builder *b, const float *values)
@@ -339,8 +339,8 @@ swarf_status swarf_scene_cast(swarf_scene *scene, const double *origin, const do
     for (size_t ray = 0; ray < count; ray++) {
         double longest = 0;
         for (size_t place = 3 * ray; place < 3 * ray + 3; place++) {
-            SWARF_REQUIRE(isfinite(origin[place]) && isfinite(direction[place]), "rays: a number of ray %zu is not finite",
-                          ray);
+            SWARF_REQUIRE(isfinite(origin[place]) && isfinite(direction[place]),
+                          "rays: a number of ray %zu is not finite", ray);
             longest = fmax(longest, fabs(direction[place]));
         }
         SWARF_REQUIRE(longest > 0, "rays: the direction of ray %zu is zero", ray);

@@ -12,15 +12,16 @@ static void project(const swarf_camera *camera, double aspect, const double poin
     for (int i = 0; i < 3; i++) f[i] = camera->target[i] - camera->eye[i];
     for (int i = 0; i < 3; i++) length += f[i] * f[i];
     for (int i = 0; i < 3; i++) f[i] /= sqrt(length);
-    for (int i = 0; i < 3; i++) r[i] = f[(i + 1) % 3] * camera->up[(i + 2) % 3] - f[(i + 2) % 3] * camera->up[(i + 1) % 3];
+    for (int i = 0; i < 3; i++)
+        r[i] = f[(i + 1) % 3] * camera->up[(i + 2) % 3] - f[(i + 2) % 3] * camera->up[(i + 1) % 3];
     length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
     for (int i = 0; i < 3; i++) r[i] /= length;
     for (int i = 0; i < 3; i++) u[i] = r[(i + 1) % 3] * f[(i + 2) % 3] - r[(i + 2) % 3] * f[(i + 1) % 3];
     for (int i = 0; i < 3; i++) q[i] = point[i] - camera->eye[i];
     const double x = q[0] * r[0] + q[1] * r[1] + q[2] * r[2], y = q[0] * u[0] + q[1] * u[1] + q[2] * u[2];
     out[2] = q[0] * f[0] + q[1] * f[1] + q[2] * f[2];
-    const double half = camera->perspective ? out[2] * tan(camera->fov_deg * 3.14159265358979323846 / 360)
-                                            : camera->height_mm / 2;
+    const double half =
+        camera->perspective ? out[2] * tan(camera->fov_deg * 3.14159265358979323846 / 360) : camera->height_mm / 2;
     out[0] = x / (half * aspect);
     out[1] = y / half;
 }
@@ -50,9 +51,9 @@ static void check_sides(void)
         double point[3];
         int x, y;
     } sides[] = {
-        {SWARF_VIEW_TOP, {1, 1, 1}, 1, 1},     {SWARF_VIEW_BOTTOM, {1, 1, -1}, 1, -1},
-        {SWARF_VIEW_FRONT, {1, -1, 1}, 1, 1},  {SWARF_VIEW_REAR, {1, 1, 1}, -1, 1},
-        {SWARF_VIEW_LEFT, {-1, 1, 1}, -1, 1},  {SWARF_VIEW_RIGHT, {1, 1, 1}, 1, 1},
+        {SWARF_VIEW_TOP, {1, 1, 1}, 1, 1},       {SWARF_VIEW_BOTTOM, {1, 1, -1}, 1, -1},
+        {SWARF_VIEW_FRONT, {1, -1, 1}, 1, 1},    {SWARF_VIEW_REAR, {1, 1, 1}, -1, 1},
+        {SWARF_VIEW_LEFT, {-1, 1, 1}, -1, 1},    {SWARF_VIEW_RIGHT, {1, 1, 1}, 1, 1},
         {SWARF_VIEW_ISOMETRIC, {1, 0, 1}, 1, 1},
     };
     const swarf_box box = {{-1, -1, -1}, {1, 1, 1}};

@@ -17,7 +17,8 @@ static swarf_stock_options voxels(double voxel_mm)
 
 static double angle_between(const float normal[3], double x, double y, double z)
 {
-    const double sine[3] = {normal[1] * z - normal[2] * y, normal[2] * x - normal[0] * z, normal[0] * y - normal[1] * x};
+    const double sine[3] = {normal[1] * z - normal[2] * y, normal[2] * x - normal[0] * z,
+                            normal[0] * y - normal[1] * x};
     return atan2(sqrt(sine[0] * sine[0] + sine[1] * sine[1] + sine[2] * sine[2]),
                  normal[0] * x + normal[1] * y + normal[2] * z);
 }
@@ -77,12 +78,10 @@ static void check_bar(test_random *random)
             direction[i] = -normal[i] + test_random_in(random, -0.3, 0.3);
         }
         const double away = test_random_in(random, 0.4, 2000);
-        for (int i = 0; i < 3; i++)
-            origin[i] = base[i] + height * along[i] + radius * normal[i] - away * direction[i];
+        for (int i = 0; i < 3; i++) origin[i] = base[i] + height * along[i] + radius * normal[i] - away * direction[i];
         float found[3];
         if (!CHECK_OK(swarf_scene_cast(scene, origin, direction, 1, &distance, found))) break;
-        const double steepness =
-            -(direction[0] * normal[0] + direction[1] * normal[1] + direction[2] * normal[2]);
+        const double steepness = -(direction[0] * normal[0] + direction[1] * normal[1] + direction[2] * normal[2]);
         worst_distance = fmax(worst_distance, isfinite(distance) ? fabs(distance - away) * steepness : INFINITY);
         worst_angle = fmax(worst_angle, angle_between(found, normal[0], normal[1], normal[2]));
     }
@@ -126,7 +125,8 @@ static void check_ray(swarf_stock *stock, const double origin[3], const double d
     CHECK_NEAR(sample_at(stock, origin, direction, distance) / voxel, 0, 1e-3);
     CHECK(sample_at(stock, origin, direction, distance - bit) > -1e-5 * voxel);
     CHECK(sample_at(stock, origin, direction, distance + bit) < 1e-5 * voxel);
-    if (inside < steps) CHECK(distance > step * ((double)inside - 1) || sample_at(stock, origin, direction, distance + bit) < 0);
+    if (inside < steps)
+        CHECK(distance > step * ((double)inside - 1) || sample_at(stock, origin, direction, distance + bit) < 0);
 }
 
 /** 10,000 rays from all around and from within, some along the grid's own lines, against marching; the same rays one
@@ -170,7 +170,8 @@ static void check_field(test_random *random)
     }
     CHECK(hits > RAYS / 4 && hits < RAYS);
     for (size_t ray = 0; ray < RAYS; ray++)
-        CHECK_OK(swarf_scene_cast(scene, origin + 3 * ray, direction + 3 * ray, 1, again + ray, normal_again + 3 * ray));
+        CHECK_OK(
+            swarf_scene_cast(scene, origin + 3 * ray, direction + 3 * ray, 1, again + ray, normal_again + 3 * ray));
     CHECK(memcmp(distance, again, RAYS * sizeof(double)) == 0);
     CHECK(memcmp(normal, normal_again, RAYS * 3 * sizeof(float)) == 0);
     for (int threads = 1; threads <= 8; threads += threads == 3 ? 5 : 1) {
