@@ -5,13 +5,13 @@
 #include "base/file.h"
 #include "base/guard.hpp"
 #include "stock/stock.h"
+#include "stock/vdb_scan.h"
 #include "stock/vdb_tree.hpp"
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/FastSweeping.h>
-#include <openvdb/tools/Prune.h>
 
 #include <cerrno>
 #include <cmath>
@@ -138,7 +138,6 @@ void trim_band(openvdb::FloatGrid &grid, float band)
             if (leaf->isValueOn(i) && !(std::fabs(value) < band)) leaf->setValueOff(i, value < 0 ? -band : band);
         }
     openvdb::tools::changeLevelSetBackground(tree, band);
-    openvdb::tools::pruneLevelSet(tree);
 }
 
 bool all_finite(const openvdb::FloatTree &tree)
@@ -201,6 +200,7 @@ extern "C" swarf_status swarf_stock_read(const char *path, const swarf_progress 
         if (!file || fstat(fileno(file.get()), &info) != 0)
             return swarf_fail(SWARF_ERROR_IO, "%s: cannot open: %s", path, std::strerror(errno));
         if (!S_ISREG(info.st_mode)) return swarf_fail(SWARF_ERROR_IO, "%s: not a file", path);
+        SWARF_TRY(swarf_vdb_scan(file.get(), static_cast<uint64_t>(info.st_size), path));
         swarf_interrupter interrupter(progress);
         openvdb::GridPtrVecPtr grids;
         try {

@@ -88,7 +88,8 @@ swarf_tree *swarf_tree_adopt(const openvdb::FloatGrid::Ptr &grid)
         tree->base[k] = lo * SWARF_NODE_DIM;
         tree->layout.count[k] = hi - lo + 1;
     }
-    tree->layout.voxel = grid->voxelSize()[0];
+    /* from the matrix: voxelSize() is a difference of positions and loses the last digits */
+    tree->layout.voxel = grid->transform().baseMap()->getAffineMap()->getMat4()(0, 0);
     tree->layout.background = grid->background();
     const openvdb::Vec3d origin = grid->indexToWorld(tree->base);
     for (int k = 0; k < 3; k++) tree->layout.origin[k] = origin[k];
