@@ -52,16 +52,14 @@ def screenshot(name):
 
 
 def menu_texts():
-    """Texts of all entries of the menu bar's menus."""
-    found = []
+    """Texts of the entries in the menus that are shown now."""
     bar = Gui.getMainWindow().menuBar()
-    menus = [action.menu() for action in bar.actions() if action.menu()]
-    while menus:
-        menu = menus.pop()
-        for action in menu.actions():
-            found.append(action.text().replace("&", ""))
-            if action.menu():
-                menus.append(action.menu())
+    shown = {action.text() for action in bar.actions() if action.isVisible()}
+    found = []
+    for menu in bar.findChildren(QtWidgets.QMenu):
+        if menu.parent() is bar and menu.title() in shown:
+            submenus = [menu, *menu.findChildren(QtWidgets.QMenu)]
+            found += [action.text().replace("&", "") for item in submenus for action in item.actions()]
     return found
 
 

@@ -91,9 +91,9 @@ class Update:
 
 
 class CamEntries:
-    """Puts the commands beside FreeCAD's own simulators: Path_Simulator up to 0.21, CAM_Simulator from 1.0."""
+    """Puts the commands beside FreeCAD's own simulators in the CAM workbench; from FreeCAD 0.21 on."""
 
-    SIMULATORS = ("Path_Simulator", "CAM_Simulator")
+    SIMULATORS = ("Path_Simulator", "CAM_Simulator")  # 0.21, 1.0
 
     def modifyMenuBar(self):
         """After the simulators in the menu."""
@@ -105,9 +105,30 @@ class CamEntries:
         return [{"insert": NAMES[0], "toolItem": simulator, "after": ""} for simulator in self.SIMULATORS]
 
 
+class PathEntries:
+    """The same in FreeCAD 0.20, where a workbench can only be added to once it is there."""
+
+    def __init__(self):
+        self.done = False
+
+    def on_activated(self, name):
+        """The Path workbench has just been activated for the first time."""
+        if name == "PathWorkbench" and not self.done:
+            self.done = True
+            workbench = Gui.getWorkbench(name)
+            workbench.appendMenu(["&Path"], NAMES)
+            workbench.appendToolbar("Swarf", NAMES)
+            workbench.reloadActive()
+
+
+_path_entries = PathEntries()  # Qt keeps no reference to the object of a method it calls
+
+
 def register():
-    """Make the commands known; in the CAM workbench too, where FreeCAD can."""
+    """Make the commands known, in the CAM workbench too."""
     Gui.addCommand("Swarf_Simulate", Simulate())
     Gui.addCommand("Swarf_Update", Update())
     if hasattr(Gui, "addWorkbenchManipulator"):
         Gui.addWorkbenchManipulator(CamEntries())
+    else:
+        Gui.getMainWindow().workbenchActivated.connect(_path_entries.on_activated)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The example job, made by freecadcmd and read back; with the native module it is simulated too."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+from swarf_cam import reader
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory):
+    """Path of the example's document."""
+    import shutil
+
+    program = shutil.which(os.environ.get("SWARF_FREECADCMD", "freecadcmd"))
+    if not program:
+        pytest.skip("freecadcmd is not installed")
+    folder = tmp_path_factory.mktemp("example")
+    path = folder / "job.FCStd"
+    home = folder / "home"
+    home.mkdir()
+    environment = dict(os.environ, SWARF_EXAMPLE_OUT=str(path), FREECAD_USER_HOME=str(home))
+    done = subprocess.run([program, os.path.join(ROOT, "examples", "make_job.py")], env=environment,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300)
+    assert done.returncode == 0, done.stdout.decode(errors="replace")[-2000:]
+    assert path.exists()
+    return path
+
+
+def test_a_failing_example_says_so(freecadcmd, tmp_path):
+    """freecadcmd itself would exit with 0."""
+    (tmp_path / "file").write_text("")
+    environment = dict(os.environ, SWARF_EXAMPLE_OUT=str(tmp_path / "file" / "job.FCStd"),
+                       FREECAD_USER_HOME=str(tmp_path))
+    done = subprocess.run([freecadcmd, os.path.join(ROOT, "examples", "make_job.py")], env=environment,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=300)
+    assert done.returncode == 1
+
+
+def test_read(example):
+    data = reader.read_data(example)
+    assert data.moves.operations[:6] == ["Facing", "Pocket", "Step", "Outline", "Drilling", "PeckDrilling"]
+    assert data.stock == {"kind": "box", "lo": [-3.0, -3.0, 0.0], "hi": [83.0, 63.0, 16.0]}
+    holes = set()
+    for index in range(len(data.moves)):
+        row = data.moves.row(index)
+        operation = data.moves.operations[data.moves.sections[int(row[2])][1]]
+        if operation == "PeckDrilling" and row[7] < 0:
+            holes.add((round(row[5], 3), round(row[6], 3)))
+    assert holes == {(6, 6), (74, 6), (6, 54)}
+
+
+def test_simulate(example, swarf, tmp_path):
+    report = tmp_path / "report.json"
+    done = subprocess.run([sys.executable, "-m", "swarf", "simulate", str(example), "--voxel", "0.25", "--report",
+                           str(report), "--output", str(tmp_path / "stock.stl")], timeout=300)
+    assert done.returncode == 0
+    result = json.loads(report.read_text())
+    removed = result["removed_mm3_by_operation"]
+    assert removed["Facing"] == pytest.approx(86 * 66, rel=0.01)
+    # the pocket as drawn, less what a mill of 5 mm cannot reach, which is nothing: its corners have 5 mm
+    assert removed["Pocket"] == pytest.approx((30 * 22 - (4 - 3.14159) * 25) * 6, rel=0.01)
+    assert removed["PeckDrilling"] < 1
+    assert result["mesh"]["closed"]
