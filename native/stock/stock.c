@@ -73,8 +73,10 @@ swarf_status swarf_stock_layout(const swarf_box *box, const swarf_stock_options 
     }
     const double wanted = estimate(box, voxel);
     if (wanted > limit) {
-        double fitting = voxel;
-        while (estimate(box, fitting) > limit && fitting < 1e9 * voxel) fitting *= 1.05;
+        /* from where it cannot fit, whatever was asked for: 5e-324 * 1.05 is 5e-324 */
+        const double edge = fmax(box->hi[0] - box->lo[0], fmax(box->hi[1] - box->lo[1], box->hi[2] - box->lo[2]));
+        double fitting = fmax(voxel, 1e-7 * edge);
+        while (estimate(box, fitting) > limit && fitting < edge) fitting *= 1.05;
         return swarf_fail(SWARF_ERROR_MEMORY,
                           "stock: a voxel of %g mm may need %.3g GiB, %.3g GiB may be used; a voxel of %.2g mm or more fits",
                           voxel, wanted / 0x1p30, limit / 0x1p30, fitting * 1.05);
