@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command line, end to end."""
+import json
+import subprocess
+
+import pytest
+
+from conftest import GCODE, SLOT_MM3
+
+STOCK = "box:0,0,-10,60,40,0"
+TOOL = "1=flat:d=6,l=20"
+
+
+@pytest.fixture
+def program(tmp_path):
+    path = tmp_path / "slot.nc"
+    path.write_text(GCODE)
+    return path
+
+
+@pytest.fixture
+def swarf_run(launcher, tmp_path):
+    """Run the launcher from another folder; (status, stdout, stderr)."""
+
+    def run(*words):
+        done = subprocess.run([launcher, *map(str, words)], cwd=tmp_path, capture_output=True, text=True, timeout=120,
+                              stdin=subprocess.DEVNULL, check=False)
+        return done.returncode, done.stdout, done.stderr
+
+    return run
+
+
+@pytest.fixture
+def refused(swarf_run, tmp_path):
+    """Run and expect status 2, one line, these words in it, and no new file."""
+
+    def run(*words, says):
+        before = set(tmp_path.iterdir())
+        status, out, err = swarf_run("simulate", *words)
+        assert status == 2, err
+        assert err.startswith("swarf: error: ") and err.count("\n") == 1 and not out
+        for word in says:
+            assert word in err
+        assert set(tmp_path.iterdir()) == before
+
+    return run
+
+
+def test_everything_at_once(swarf_run, program, tmp_path):
+    status, out, err = swarf_run(
+        "simulate", program, "--stock", STOCK, "--tool", TOOL, "--voxel", "0.5", "--threads", "2",
+        "--output", "s.stl", "--output", "s.ply", "--output", "s.obj", "--output", "s.vdb",
+        "--picture", "s.png", "--report", "r.json")
+    assert (status, out, err) == (0, "", "")
+    report = json.loads((tmp_path / "r.json").read_text())
+    keys = ("version input voxel_mm threads isa moves seconds volume_mm3 removed_mm3_by_operation memory_peak_mb "
+            "bounding_box mesh findings operations tools").split()
+    assert set(keys) <= set(report) and "comparison" not in report
+    assert {"read", "stock", "cut", "mesh", "picture", "total"} <= set(report["seconds"])
+    assert (report["voxel_mm"], report["threads"], report["findings"]) == (0.5, 2, [])
+    volume = report["volume_mm3"]
+    assert volume["initial"] == pytest.approx(24000, rel=1e-4)
+    assert volume["removed"] == pytest.approx(SLOT_MM3, rel=1e-2)
+    assert volume["final"] == pytest.approx(volume["initial"] - volume["removed"])
+    assert sum(report["removed_mm3_by_operation"].values()) == pytest.approx(volume["removed"], rel=1e-6)
+    assert report["mesh"]["closed"] and report["mesh"]["triangles"] > 1000
+    assert report["tools"][0]["diameter_mm"] == 6
+    for name in ("s.stl", "s.ply", "s.obj", "s.vdb", "s.png"):
+        assert (tmp_path / name).stat().st_size > 1000
+
+
+def test_result_is_the_next_stock(swarf_run, program, tmp_path):
+    assert swarf_run("simulate", program, "--stock", STOCK, "--tool", TOOL, "--voxel", "0.5", "--output", "a.vdb",
+                     "--output", "a.stl")[0] == 0
+    for stock, more in (("a.vdb", ()), ("a.stl", ("--resolution", "120"))):
+        status, _, err = swarf_run("simulate", program, "--stock", stock, "--tool", TOOL, *more, "--report", "b.json")
+        assert status == 0, err
+        report = json.loads((tmp_path / "b.json").read_text())
+        assert report["voxel_mm"] == pytest.approx(0.5)
+        assert report["volume_mm3"]["initial"] == pytest.approx(24000 - SLOT_MM3, rel=1e-2)
+        assert report["volume_mm3"]["removed"] < 0.02 * SLOT_MM3
+
+
+def test_cylinder_stock(swarf_run, program, tmp_path):
+    status, _, err = swarf_run("simulate", program, "--stock", "cylinder:30,20,-10,30,10", "--tool", TOOL,
+                               "--resolution", "100", "--report", "r.json")
+    assert status == 0, err
+    assert json.loads((tmp_path / "r.json").read_text())["volume_mm3"]["initial"] == pytest.approx(28274.3, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "size, says",
+    [
+        (("--voxel", "0"), ["voxel"]),
+        (("--voxel", "-1"), ["voxel"]),
+        (("--voxel", "nan"), ["voxel"]),
+        (("--voxel", "inf"), ["voxel"]),
+        (("--voxel", "1e-9"), ["voxel", "fits"]),
+        (("--voxel", "x"), ["--voxel"]),
+        (("--resolution", "0"), ["resolution"]),
+        (("--resolution", "nan"), ["resolution"]),
+        (("--resolution", "10", "--voxel", "1"), ["not allowed with"]),
+        (("--threads", "-1"), ["threads"]),
+    ],
+)
+def test_impossible_sizes(refused, program, size, says):
+    refused(program, "--stock", STOCK, "--tool", TOOL, "--output", "s.stl", *size, says=says)
+
+
+@pytest.mark.parametrize(
+    "stock, says",
+    [
+        ("box:0,0,0,1,1", ["5 numbers"]),
+        ("box:0,0,0,1,1,x", ["x"]),
+        ("box:0,0,0,1,1,nan", ["finite"]),
+        ("box:0,0,0,-1,1,1", ["corner"]),
+        ("cylinder:0,0,0,0,10", ["radius"]),
+        ("ball:3", ["box:"]),
+        ("none.stl", ["none.stl"]),
+        ("none.vdb", ["none.vdb"]),
+        ("cut.stl", ["cut.stl"]),
+        ("cut.vdb", ["cut.vdb"]),
+    ],
+)
+def test_impossible_stocks(refused, program, tmp_path, stock, says):
+    (tmp_path / "cut.stl").write_bytes(b"\0" * 80 + b"\5\0\0\0" + b"\0" * 99)
+    (tmp_path / "cut.vdb").write_bytes(b" BDV\0\0\0\0" + b"\0" * 20)
+    refused(program, "--stock", stock, "--tool", TOOL, says=says)
+
+
+@pytest.mark.parametrize("tool", ["flat:d=3,l=18", "x=flat:d=3,l=18", "-1=flat:d=3,l=18", "1=cube:d=1", "1=", "1=flat:d=0,l=1"])
+def test_impossible_tools(refused, program, tool):
+    refused(program, "--stock", STOCK, f"--tool={tool}", says=["tool"])
+
+
+def test_what_gcode_does_not_tell(refused, program):
+    refused(program, "--stock", STOCK, says=["T1", "--tool 1="])
+    refused(program, "--tool", TOOL, says=["--stock box:"])
+    refused(program, "--tool", TOOL, "--tool", TOOL, "--stock", STOCK, says=["twice"])
+    refused(program, "--tool", TOOL, "--stock", STOCK, "--job", "Job", says=["job"])
+
+
+@pytest.mark.parametrize(
+    "name, content, says",
+    [
+        ("none.nc", None, ["none.nc"]),
+        ("empty.nc", b"", ["no moves"]),
+        ("comment.nc", b"(nothing here)\n", ["no moves"]),
+        ("bad.nc", b"G21\nG0 X1\nG999 Y2\n", ["bad.nc:3:"]),
+        ("binary.nc", bytes(range(256)), ["binary.nc:1:"]),
+        ("part.step", b"x", ["unknown suffix", ".nc"]),
+        ("plain", b"x", ["unknown suffix"]),
+        ("text.FCStd", b"this is no archive", ["text.FCStd"]),
+    ],
+)
+def test_impossible_inputs(refused, tmp_path, name, content, says):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    refused(name, "--stock", STOCK, "--tool", TOOL, says=says)
+
+
+@pytest.mark.parametrize(
+    "words, says",
+    [
+        (("--output", "s.step"), ["unknown suffix", ".stl"]),
+        (("--output", "s"), ["unknown suffix"]),
+        (("--picture", "s.jpg"), [".png"]),
+        (("--report", "s.txt"), [".json"]),
+        (("--output", "no/s.stl"), ["no/s.stl", "written"]),
+        (("--report", "/proc/r.json"), ["/proc/r.json"]),
+        (("--output", "folder.stl"), ["regular file"]),
+        (("--output", "s.stl", "--output", "./s.stl"), ["two outputs"]),
+    ],
+)
+def test_outputs_are_checked_first(refused, program, tmp_path, words, says):
+    (tmp_path / "folder.stl").mkdir()
+    # A voxel that takes minutes: the refusal must come before the work.
+    refused(program, "--stock", STOCK, "--tool", TOOL, "--voxel", "0.005", *words, says=says)
+
+
+def test_no_words(swarf_run):
+    for words in ((), ("simulate",), ("mill",), ("simulate", "a.nc", "--nonsense")):
+        status, out, err = swarf_run(*words)
+        assert status == 2 and err.startswith("swarf: error: ") and err.count("\n") == 1 and not out
+
+
+def test_help_and_version(swarf_run):
+    assert swarf_run("--version")[1].startswith("swarf 0.")
+    status, out, _ = swarf_run("simulate", "--help")
+    assert status == 0
+    for option in ("--stock", "--tool", "--voxel", "--resolution", "--threads", "--output", "--picture", "--report", "--job"):
+        assert option in out
+
+
+def test_a_package_of_this_name_in_the_working_folder_is_not_run(swarf_run, tmp_path):
+    (tmp_path / "swarf.py").write_text("raise SystemExit(9)")
+    assert swarf_run("--version")[0] == 0
+
+
+def test_findings_of_class_error_give_status_1(monkeypatch, program, tmp_path, capsys):
+    """A registered reader's job with a tool that is missing."""
+    import swarf
+    from swarf import cli, readers
+
+    class Entry:
+        value = "test"
+
+        @staticmethod
+        def load():
+            def read(path, job=None, progress=None):
+                assert job == "Job1"
+                return swarf.Job(f"{job}", swarf.Program.read_gcode(program),
+                                 stock={"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)},
+                                 design=swarf.Mesh.from_stock(swarf.Stock.box((0, 0, -10), (60, 40, 0), 1)))
+            return read
+
+    monkeypatch.setattr(readers, "readers", lambda: {".part": Entry})
+    report = tmp_path / "r.json"
+    assert cli.main(["simulate", "a.part", "--job", "Job1", "--resolution", "60", "--report", str(report)]) == 1
+    made = json.loads(report.read_text())
+    assert made["findings"][0]["severity"] == "error"
+    assert set(made["comparison"]) == {"design_mm3", "stock_mm3", "excess_mm3", "gouge_mm3"}
+    assert "swarf: error: line" in capsys.readouterr().err
