@@ -129,9 +129,6 @@ swarf_status check_transform(const openvdb::FloatGrid &grid, const char *path, d
 void trim_band(openvdb::FloatGrid &grid, float band)
 {
     openvdb::FloatTree &tree = grid.tree();
-    auto tile = tree.beginValueOn();
-    tile.setMaxDepth(openvdb::FloatTree::ValueOnIter::LEAF_DEPTH - 1);
-    for (; tile; ++tile) tile.setActiveState(false);
     for (auto leaf = tree.beginLeaf(); leaf; ++leaf)
         for (openvdb::Index i = 0; i < SWARF_LEAF_SIZE; i++) {
             const float value = leaf->getValue(i);
@@ -175,6 +172,8 @@ swarf_status normalise(openvdb::FloatGrid::Ptr &grid, const char *path)
     const double width = static_cast<double>(grid->background()) / voxel;
     if (!(std::isfinite(width) && width >= 1))
         return swarf_fail(SWARF_ERROR_FORMAT, "%s: a band of %g voxels; at least 1 is needed", path, width);
+    if (grid->tree().activeTileCount() > 0)
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s: not a narrow band: whole blocks are active", path);
     if (!all_finite(grid->tree())) return swarf_fail(SWARF_ERROR_FORMAT, "%s: it holds values that are not finite", path);
     const auto band = static_cast<float>(SWARF_HALF_WIDTH * voxel);
     trim_band(*grid, std::min(grid->background(), width > SWARF_HALF_WIDTH ? band : grid->background()));

@@ -78,7 +78,9 @@ static swarf_status scan_file(const scan *s)
     SWARF_TRY(read_number(s, 8, "magic number", &magic));
     if (magic != 0x56444220) return swarf_fail(SWARF_ERROR_FORMAT, "%s: not a .vdb file", s->path);
     SWARF_TRY(read_number(s, 4, "version", &version));
-    if (version < first_version) return SWARF_OK;
+    if (version < first_version)
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s: format %llu is not read, %llu (2012) or later is; save it anew", s->path,
+                          (unsigned long long)version, (unsigned long long)first_version);
     SWARF_TRY(skip(s, 8 + 1 + 36, "header"));
     SWARF_TRY(skip_metadata(s));
     SWARF_TRY(read_number(s, 4, "number of grids", &grids));

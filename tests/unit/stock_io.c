@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* .vdb files: out and in again without a change, every truncation refused without harm. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "test.h"
+
+static char folder[] = "/tmp/swarf-io-XXXXXX";
+
+static const char *in_folder(const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+static void put(const char *name, const unsigned char *data, size_t length)
+{
+    FILE *file = fopen(in_folder(name), "wb");
+    if (!CHECK(file != NULL)) return;
+    CHECK(fwrite(data, 1, length, file) == length);
+    fclose(file);
+}
+
+static unsigned char *get(const char *name, size_t *length)
+{
+    FILE *file = fopen(in_folder(name), "rb");
+    if (!CHECK(file != NULL)) return NULL;
+    fseek(file, 0, SEEK_END);
+    *length = (size_t)ftell(file);
+    rewind(file);
+    unsigned char *data = malloc(*length);
+    CHECK(data && fread(data, 1, *length, file) == *length);
+    fclose(file);
+    return data;
+}
+
+static swarf_stock *make_stock(double voxel)
+{
+    const double base[3] = {1, 2, 3}, axis[3] = {0, 3, 4};
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = voxel;
+    swarf_stock *stock = NULL;
+    CHECK_OK(swarf_stock_create_cylinder(base, axis, 2, &options, &stock));
+    return stock;
+}
+
+static void check_round_trip(void)
+{
+    swarf_stock *stock = make_stock(0.1), *back = NULL;
+    if (!stock) return;
+    CHECK_OK(swarf_stock_write(stock, in_folder("a.vdb"), NULL));
+    if (CHECK_OK(swarf_stock_read(in_folder("a.vdb"), NULL, &back))) {
+        uint64_t one, two;
+        double volume, volume_back;
+        CHECK_OK(swarf_stock_hash(stock, &one));
+        CHECK_OK(swarf_stock_hash(back, &two));
+        CHECK(one == two);
+        CHECK_OK(swarf_stock_volume(stock, &volume));
+        CHECK_OK(swarf_stock_volume(back, &volume_back));
+        CHECK_NEAR(volume, volume_back, 1e-12 * volume);
+        CHECK_NEAR(swarf_stock_voxel(back), 0.1, 1e-12);
+        const double point[3] = {1.5, 3, 5};
+        float here, there;
+        CHECK_OK(swarf_stock_sample(stock, point, 1, &here));
+        CHECK_OK(swarf_stock_sample(back, point, 1, &there));
+        CHECK_NEAR(here, there, 1e-6);
+        CHECK_OK(swarf_stock_boolean(back, stock, SWARF_DIFFERENCE)); /* the voxels coincide */
+        CHECK_OK(swarf_stock_write(back, in_folder("empty.vdb"), NULL));
+        swarf_stock_destroy(back);
+        back = NULL;
+        if (CHECK_OK(swarf_stock_read(in_folder("empty.vdb"), NULL, &back))) swarf_stock_destroy(back);
+    }
+    swarf_stock_destroy(stock);
+}
+
+static int stop(void *user, double fraction)
+{
+    (void)user;
+    (void)fraction;
+    return 1;
+}
+
+static void check_refusals(void)
+{
+    swarf_stock *stock = make_stock(0.5), *back = NULL;
+    if (!stock) return;
+    CHECK_FAILS(swarf_stock_read(in_folder("none.vdb"), NULL, &back), SWARF_ERROR_IO, "none.vdb");
+    CHECK_FAILS(swarf_stock_read(folder, NULL, &back), SWARF_ERROR_IO, "not a file");
+    CHECK_FAILS(swarf_stock_read(NULL, NULL, &back), SWARF_ERROR_ARGUMENT, NULL);
+    CHECK_FAILS(swarf_stock_write(stock, "/nowhere/a.vdb", NULL), SWARF_ERROR_IO, "/nowhere/a.vdb");
+    CHECK_FAILS(swarf_stock_write(stock, "", NULL), SWARF_ERROR_ARGUMENT, NULL);
+    CHECK_FAILS(swarf_stock_write(NULL, in_folder("b.vdb"), NULL), SWARF_ERROR_ARGUMENT, NULL);
+    put("text.vdb", (const unsigned char *)"hello, this is no grid", 22);
+    CHECK_FAILS(swarf_stock_read(in_folder("text.vdb"), NULL, &back), SWARF_ERROR_FORMAT, "not a .vdb file");
+    put("zero.vdb", (const unsigned char *)"", 0);
+    CHECK_FAILS(swarf_stock_read(in_folder("zero.vdb"), NULL, &back), SWARF_ERROR_FORMAT, "zero.vdb");
+    mkdir(in_folder("closed"), 0555);
+    if (geteuid() != 0) /* root may write anywhere */
+        CHECK_FAILS(swarf_stock_write(stock, in_folder("closed/a.vdb"), NULL), SWARF_ERROR_IO, "closed/a.vdb");
+    CHECK(back == NULL);
+    swarf_stock_destroy(stock);
+    /* cancelling keeps the file that was there */
+    stock = make_stock(0.02);
+    put("old.vdb", (const unsigned char *)"old", 3);
+    const swarf_progress progress = {stop, NULL};
+    if (stock) CHECK_FAILS(swarf_stock_write(stock, in_folder("old.vdb"), &progress), SWARF_ERROR_CANCELLED, NULL);
+    size_t length = 0;
+    free(get("old.vdb", &length));
+    CHECK(length == 3);
+    if (stock) CHECK_OK(swarf_stock_write(stock, in_folder("old.vdb"), NULL));
+    CHECK_FAILS(swarf_stock_read(in_folder("old.vdb"), &progress, &back), SWARF_ERROR_CANCELLED, NULL);
+    swarf_stock_destroy(stock);
+}
+
+/* Cut at every kind of place: refused, never a crash. */
+static void check_truncation(void)
+{
+    swarf_stock *stock = make_stock(0.5);
+    if (!stock) return;
+    CHECK_OK(swarf_stock_write(stock, in_folder("c.vdb"), NULL));
+    swarf_stock_destroy(stock);
+    size_t length = 0;
+    unsigned char *data = get("c.vdb", &length);
+    for (int i = 0; data && i < 300; i++) {
+        const size_t cut = i < 200 ? (size_t)i * length / 200 : length - (size_t)(i - 199);
+        put("d.vdb", data, cut);
+        swarf_stock *back = NULL;
+        CHECK_FAILS(swarf_stock_read(in_folder("d.vdb"), NULL, &back), SWARF_ERROR_FORMAT, "d.vdb");
+    }
+    free(data);
+}
+
+int main(void)
+{
+    if (!CHECK(mkdtemp(folder) != NULL)) return test_end();
+    check_round_trip();
+    check_refusals();
+    check_truncation();
+    char command[64];
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    CHECK(system(command) == 0);
+    return test_end();
+}
