@@ -72,13 +72,15 @@ def test_everything_at_once(swarf_run, program, tmp_path):
 def test_result_is_the_next_stock(swarf_run, program, tmp_path):
     assert swarf_run("simulate", program, "--stock", STOCK, "--tool", TOOL, "--voxel", "0.5", "--output", "a.vdb",
                      "--output", "a.stl")[0] == 0
-    for stock, more in (("a.vdb", ()), ("a.stl", ("--resolution", "120"))):
+    # The voxels come back as they were; meshing and sampling the mesh
+    # again moves the slot's 635 mm2 by up to a tenth of a voxel, 0.05 mm: 32 mm3, 3 %.
+    for stock, more, left in (("a.vdb", (), 1e-4), ("a.stl", ("--resolution", "120"), 0.03)):
         status, _, err = swarf_run("simulate", program, "--stock", stock, "--tool", TOOL, *more, "--report", "b.json")
         assert status == 0, err
         report = json.loads((tmp_path / "b.json").read_text())
         assert report["voxel_mm"] == pytest.approx(0.5)
         assert report["volume_mm3"]["initial"] == pytest.approx(24000 - SLOT_MM3, rel=1e-2)
-        assert report["volume_mm3"]["removed"] < 0.02 * SLOT_MM3
+        assert report["volume_mm3"]["removed"] < left * SLOT_MM3
 
 
 def test_cylinder_stock(swarf_run, program, tmp_path):
