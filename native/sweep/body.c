@@ -214,10 +214,31 @@ static swarf_piece to_piece(const face *f, double voxel)
     return p;
 }
 
+/* Greatest radius of a chain's component: at a node or where it is clipped, as arcs are split where they are vertical. */
+static double widest(const outline *o, const chain *c)
+{
+    const double lo = fmax(o->z_lo, c->lo), hi = fmin(o->z_hi, c->hi);
+    double most = fmax(chain_radius(o, c, lo), chain_radius(o, c, hi));
+    for (size_t i = c->first; i < c->first + c->count; i++) {
+        const face *f = &o->faces[i];
+        most = fmax(most, chain_radius(o, c, fmax(lo, fmin(hi, f->z0))));
+        most = fmax(most, chain_radius(o, c, fmax(lo, fmin(hi, f->z1))));
+    }
+    return most;
+}
+
+/* Does a face of the chain have the horizontal normal among its own? */
+static int has_side(const outline *o, const chain *c)
+{
+    for (size_t i = c->first; i < c->first + c->count; i++)
+        if (o->faces[i].first <= same_angle && o->faces[i].last >= -same_angle) return 1;
+    return 0;
+}
+
 static swarf_status emit(const outline *o, double voxel, swarf_body *body)
 {
     size_t pieces = 0;
-    for (size_t i = 0; i < o->chain_count; i++) pieces += o->chains[i].count + 2;
+    for (size_t i = 0; i < o->chain_count; i++) pieces += o->chains[i].count + 3;
     body->pieces = calloc(pieces ? pieces : 1, sizeof *body->pieces);
     body->components = calloc(o->chain_count ? o->chain_count : 1, sizeof *body->components);
     if (!body->pieces || !body->components) return swarf_fail(SWARF_ERROR_MEMORY, "cutter: out of memory");
@@ -233,6 +254,10 @@ static swarf_status emit(const outline *o, double voxel, swarf_body *body)
         if (isfinite(c->hi))
             body->pieces[body->piece_count++] =
                 (swarf_piece){.radius = (float)(c->hi / voxel), .first_z = 1, .last_z = 1, .upper = 1};
+        /* A plunge draws the lower and the upper border apart: what closes it between them is the widest place. */
+        if (!has_side(o, c))
+            body->pieces[body->piece_count++] =
+                (swarf_piece){.radius = (float)(widest(o, c) / voxel), .first_r = 1, .last_r = 1};
         component->count = body->piece_count - component->first;
     }
     return SWARF_OK;

@@ -71,6 +71,8 @@ swarf_status swarf_track_append(swarf_track_list *list, const swarf_path *path, 
     if (!path->is_arc) return append_line(list, a, b);
 
     SWARF_REQUIRE(isfinite(path->arc.angle_rad), "path: the angle of an arc is not finite");
+    SWARF_REQUIRE(path->arc.plane >= SWARF_PLANE_XY && path->arc.plane <= SWARF_PLANE_YZ, "path: %d is not a plane",
+                  (int)path->arc.plane);
     static const int axes[3][2] = {{0, 1}, {2, 0}, {1, 2}}; /* in-plane coordinates of XY, ZX, YZ */
     const int *axis = axes[path->arc.plane];
     double centre[3];
