@@ -186,7 +186,13 @@ class Stock:
         """Signed distance (mm, negative inside, trilinear) at an (n, 3) table of points: read-only float32 view.
         Beyond the narrow band +-3 voxels."""
     def cut(
-        self, cutter: Cutter, program: Program, first: int = 0, *, count: Optional[int] = None, progress: Progress = None
+        self,
+        cutter: Cutter,
+        program: Program,
+        first: int = 0,
+        *,
+        count: Optional[int] = None,
+        progress: Progress = None,
     ) -> None:
         """Cut with the flutes of one cutter along moves first .. first + count - 1 of a program, whatever their tool,
         all at once. Cancelling leaves some moves cut."""

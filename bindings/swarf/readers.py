@@ -40,7 +40,8 @@ def read(path: str, job: Optional[str] = None, progress: Optional[Callable[[floa
     entry = known.get(suffix)
     if entry is None:
         hint = "" if ".fcstd" in known else "; .FCStd needs the FreeCAD add-on of Swarf"
-        raise ValueError(f"{path}: unknown suffix {suffix!r}; known: {', '.join([*GCODE_SUFFIXES, *sorted(known)])}{hint}")
+        suffixes = ", ".join([*GCODE_SUFFIXES, *sorted(known)])
+        raise ValueError(f"{path}: unknown suffix {suffix!r}; known: {suffixes}{hint}")
     try:
         reader: Reader = entry.load()
     except (ImportError, AttributeError) as error:

@@ -93,7 +93,8 @@ def make_stock(
         stock = Stock.read(description["path"], progress=progress)
         if resolution is not None or (voxel is not None and not math.isclose(voxel, stock.voxel, rel_tol=1e-6)):
             raise ValueError(
-                f"{os.fspath(description['path'])} has voxels of {stock.voxel:g} mm: leave voxel size and resolution out"
+                f"{os.fspath(description['path'])} has voxels of {stock.voxel:g} mm: "
+                "leave voxel size and resolution out"
             )
         return stock
     if voxel is None:

@@ -25,7 +25,7 @@ def _numbers(spec: str, text: str, counts: tuple[int, ...], wanted: str) -> list
 
 
 def stock(spec: str) -> dict[str, Any]:
-    """Stock of a Job from ``--stock``: a box, a cylinder, a mesh file or a .vdb file. ValueError, OSError, FormatError."""
+    """Stock of a Job from ``--stock``: box, cylinder, mesh file or .vdb file. ValueError, OSError, FormatError."""
     kind, colon, rest = spec.partition(":")
     if colon and kind == "box":
         values = _numbers(spec, rest, (6,), "box:X0,Y0,Z0,X1,Y1,Z1")

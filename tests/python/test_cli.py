@@ -130,7 +130,9 @@ def test_impossible_stocks(refused, program, tmp_path, stock, says):
     refused(program, "--stock", stock, "--tool", TOOL, says=says)
 
 
-@pytest.mark.parametrize("tool", ["flat:d=3,l=18", "x=flat:d=3,l=18", "-1=flat:d=3,l=18", "1=cube:d=1", "1=", "1=flat:d=0,l=1"])
+@pytest.mark.parametrize(
+    "tool", ["flat:d=3,l=18", "x=flat:d=3,l=18", "-1=flat:d=3,l=18", "1=cube:d=1", "1=", "1=flat:d=0,l=1"]
+)
 def test_impossible_tools(refused, program, tool):
     refused(program, "--stock", STOCK, f"--tool={tool}", says=["tool"])
 
@@ -190,8 +192,8 @@ def test_help_and_version(swarf_run):
     assert swarf_run("--version")[1].startswith("swarf 0.")
     status, out, _ = swarf_run("simulate", "--help")
     assert status == 0
-    for option in ("--stock", "--tool", "--voxel", "--resolution", "--threads", "--output", "--picture", "--report", "--job"):
-        assert option in out
+    for option in "stock tool voxel resolution threads output picture report job".split():
+        assert f"--{option}" in out
 
 
 def test_a_package_of_this_name_in_the_working_folder_is_not_run(swarf_run, tmp_path):

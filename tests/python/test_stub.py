@@ -32,7 +32,8 @@ def stub_parameters(node):
         result.append((argument.arg, kind, default))
     for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults):
         result.append((argument.arg, inspect.Parameter.KEYWORD_ONLY, default))
-    result = [(name, kind, ast.literal_eval(d) if d is not None else inspect.Parameter.empty) for name, kind, d in result]
+    empty = inspect.Parameter.empty
+    result = [(name, kind, empty if default is None else ast.literal_eval(default)) for name, kind, default in result]
     return [item for item in result if item[0] not in ("self", "cls")]
 
 
