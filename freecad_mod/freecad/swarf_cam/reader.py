@@ -73,7 +73,7 @@ def read_data(path, job=None, progress=None):
         shutil.copyfile(path, copy)
         environment = dict(os.environ, FREECAD_USER_HOME=home, SWARF_EXPORT_INPUT=copy, SWARF_EXPORT_JOB=job or "",
                            SWARF_EXPORT_FOLDER=answer)
-        parent = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+        parent = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
         code = ("import sys; sys.path.insert(0, %r); from swarf_cam.app import export; export.main()" % parent)
         log = os.path.join(folder, "log")
         status = _run([program, "-c", code], environment, log, progress)
