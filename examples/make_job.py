@@ -84,6 +84,13 @@ def plane_at(shape, height):
     return max(faces)[1]
 
 
+def hole_at(shape, x, y):
+    """Names of the faces of the hole at a place."""
+    return ["Face%d" % number for number, face in enumerate(shape.Faces, 1)
+            if isinstance(face.Surface, Part.Cylinder) and face.Surface.Radius < 3
+            and abs(face.Surface.Center.x - x) + abs(face.Surface.Center.y - y) < 1e-6]
+
+
 def tool_bit(file):
     """A tool bit of those that come with FreeCAD."""
     for folder in ("Mod/CAM/Tools/Bit", "Mod/Path/Tools/Bit"):
@@ -156,6 +163,10 @@ def make():
     def face(height):
         return [(model, [plane_at(shape, height)])]
 
+    def holes(first, last=None):
+        names = [name for x, y in HOLES[first:last] for name in hole_at(shape, x, y)]
+        return [(model, names)]
+
     trough = ["Face%d" % number for number, item in enumerate(shape.Faces, 1)
               if isinstance(item.Surface, Part.Cylinder) and item.Surface.Radius > 15]
     add_operation(job, "MillFace", "Facing", mill, face(HEIGHT), BoundaryShape="Stock", FinalDepth=HEIGHT, StepDown=1.0)
@@ -164,8 +175,8 @@ def make():
     add_operation(job, "Adaptive", "Step", mill, face(HEIGHT - STEP_DEPTH), StepDown=5.0, StepOver=25, HelixAngle=5.0)
     add_operation(job, "Profile", "Outline", mill, face(0), processHoles=False, processPerimeter=True, FinalDepth=0.0,
                   StepDown=3.0)
-    add_operation(job, "Drilling", "Drilling", drill, FinalDepth=-2.0)
-    add_operation(job, "Drilling", "PeckDrilling", drill, FinalDepth=-2.0, PeckEnabled=True, PeckDepth=4.0)
+    add_operation(job, "Drilling", "Drilling", drill, holes(2), FinalDepth=-2.0)
+    add_operation(job, "Drilling", "PeckDrilling", drill, holes(0, 2), FinalDepth=-2.0, PeckEnabled=True, PeckDepth=4.0)
     try:
         module("opencamlib", "ocl")
     except ImportError:

@@ -45,13 +45,13 @@ def test_read(example):
     data = reader.read_data(example)
     assert data.moves.operations[:6] == ["Facing", "Pocket", "Step", "Outline", "Drilling", "PeckDrilling"]
     assert data.stock == {"kind": "box", "lo": [-3.0, -3.0, 0.0], "hi": [83.0, 63.0, 16.0]}
-    holes = set()
+    holes = {"Drilling": set(), "PeckDrilling": set()}
     for index in range(len(data.moves)):
         row = data.moves.row(index)
         operation = data.moves.operations[data.moves.sections[int(row[2])][1]]
-        if operation == "PeckDrilling" and row[7] < 0:
-            holes.add((round(row[5], 3), round(row[6], 3)))
-    assert holes == {(6, 6), (74, 6), (6, 54)}
+        if operation in holes and row[7] < 0:
+            holes[operation].add((round(row[5], 3), round(row[6], 3)))
+    assert holes == {"Drilling": {(6, 54)}, "PeckDrilling": {(6, 6), (74, 6)}}
 
 
 def test_simulate(example, swarf, tmp_path):
@@ -64,5 +64,7 @@ def test_simulate(example, swarf, tmp_path):
     assert removed["Facing"] == pytest.approx(86 * 66, rel=0.01)
     # the pocket as drawn, less what a mill of 5 mm cannot reach, which is nothing: its corners have 5 mm
     assert removed["Pocket"] == pytest.approx((30 * 22 - (4 - 3.14159) * 25) * 6, rel=0.01)
-    assert removed["PeckDrilling"] < 1
+    # through what facing left: 15 mm
+    assert removed["Drilling"] == pytest.approx(3.14159 * 2.5 ** 2 * 15, rel=0.01)
+    assert removed["PeckDrilling"] == pytest.approx(2 * removed["Drilling"], rel=0.001)
     assert result["mesh"]["closed"]
