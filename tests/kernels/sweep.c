@@ -6,7 +6,7 @@
 
 #include "cases.h"
 
-enum { RANDOM = 500, MOST = 2000 };
+enum { RANDOM = 120, MOST = 2000 };
 
 /* Random points near the sweep and far off, then the places where formulas divide by zero or switch. */
 static size_t make_points(const oracle_body *body, const swarf_path *path, double voxel, test_random *random,

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Sign and first-order value of swarf_sweep_distance() against the oracle, for every cutter and motion.
  *
- * 10,000 points for each pair, 100,000 with SWARF_TEST_FULL=1. Cases are independent and shared out to threads.
+ * 10,000 points for each pair, 100,000 with SWARF_TEST_FULL=1, any number of thousands with SWARF_TEST_POINTS=1000.
+ * Arguments: number of a cutter, number of a motion (all without). Cases are independent and shared out to threads.
  */
 #include <math.h>
 #include <pthread.h>
@@ -11,7 +12,7 @@
 
 #include "cases.h"
 
-enum { CHUNK = 1000, PRINTED = 3, VALUES = 200 };
+enum { CHUNK = 1000, PRINTED = 3, VALUES = 20 };
 
 /* No sign may differ farther from the surface than this, in voxels. */
 static const double exact_bound = 1e-4;
@@ -103,6 +104,7 @@ int main(int count, char **argument)
 {
     const char *full = getenv("SWARF_TEST_FULL");
     points_per_case = full && strcmp(full, "0") != 0 ? 100000 : 10000;
+    if (getenv("SWARF_TEST_POINTS")) points_per_case = (strtoul(getenv("SWARF_TEST_POINTS"), NULL, 10) / 1000) * 1000;
     seed = test_random_begin(20240611).state;
     if (count > 1) only_cutter = atoi(argument[1]);
     if (count > 2) only_motion = atoi(argument[2]);

@@ -111,7 +111,7 @@ static void check_surface(const char *what, swarf_stock *stock, const swarf_box 
             memcpy(worst_at, at, sizeof at);
         }
     }
-    const int good = CHECK(found >= 30) & CHECK(worst <= surface_bound * voxel);
+    const int good = CHECK(found >= 20) & CHECK(worst <= surface_bound * voxel);
     if (!good) {
         printf("    of %s: %d crossings, worst off by %.4g voxels: ", what, found, worst / voxel);
         oracle_print(stdout, what, path, voxel, worst_at);
@@ -126,7 +126,7 @@ static void check_removed(const char *what, const swarf_cutter *cutter, const sw
     double before = 0, after = 0;
     const double block = (box->hi[0] - box->lo[0]) * (box->hi[1] - box->lo[1]) * (box->hi[2] - box->lo[2]);
     CHECK_OK(swarf_stock_volume(stock, &before));
-    CHECK_NEAR(before, block, 1e-6 * block);
+    CHECK_NEAR(before, block, 1e-5 * block);
     CHECK_OK(swarf_stock_cut(stock, cutter, path, 1, NULL));
     CHECK_OK(swarf_stock_volume(stock, &after));
     if (!CHECK_NEAR(before - after, exact, volume_bound * exact))
