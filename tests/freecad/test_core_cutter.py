@@ -147,6 +147,7 @@ VBIT = [(0, 0, 0), (0.5, 0, 0), (5, 7.8, 0), (5, 8.8, 0), (2.5, 8.8, 0), (2.5, 2
     (VBIT, "v_bit", {"CuttingEdgeHeight": 1.0, "CuttingEdgeAngle": 60.0}, [("flutes", 0, 8.8), ("shank", 8.8, 20)]),
     (VBIT, "VBit", {"CuttingEdgeHeight": 9.0, "CuttingEdgeAngle": 60.0}, [("flutes", 0, 16.8), ("shank", 16.8, 20)]),
     (VBIT, "chamfer", {"CuttingEdgeHeight": 7.8, "CuttingEdgeAngle": 60.0}, [("flutes", 0, 7.8), ("shank", 7.8, 20)]),
+    (VBIT, "Tap", {"CuttingEdgeLength": 1.0, "TipAngle": 60.0}, [("flutes", 0, 8.8), ("shank", 8.8, 20)]),
     (FLAT, "slittingsaw", {"BladeThickness": 3.0, "CapHeight": 2.0},
      [("shank", 0, 2), ("flutes", 2, 5), ("shank", 5, 40)]),
 ])

@@ -279,7 +279,7 @@ def parts(nodes, shape_type="", parameters=None):
 
     shape_type: FreeCAD's name of the shape in any spelling ("v_bit", "VBit", "slittingsaw"). parameters: name -> mm
     or degrees. Everything cuts below CuttingEdgeHeight, the shank begins above; a V-bit's is measured from the top of
-    its cone. A slitting saw cuts with its blade only. A probe cuts nothing. Without that parameter all of it cuts.
+    its cone, and so is a tap's CuttingEdgeLength. A slitting saw cuts with its blade only. A probe cuts nothing. Without that parameter all of it cuts.
     """
     parameters = parameters or {}
     kind = shape_type.lower().replace("_", "").replace("-", "").replace(" ", "")
@@ -290,6 +290,8 @@ def parts(nodes, shape_type="", parameters=None):
     if edge > 0.0:
         cone = _cone_top(nodes) if "CuttingEdgeAngle" in parameters else 0.0
         cuts_to = edge + cone if kind == "vbit" or edge < cone - JOIN_TOLERANCE_MM else edge
+    elif parameters.get("CuttingEdgeLength", 0.0) > 0.0:
+        cuts_to = _cone_top(nodes) + parameters["CuttingEdgeLength"]
     elif "BladeThickness" in parameters:
         cuts_from = parameters.get("CapHeight", 0.0)
         cuts_to = cuts_from + parameters["BladeThickness"]

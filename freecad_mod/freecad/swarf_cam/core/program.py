@@ -168,7 +168,7 @@ class Reader:
             self._relative = name == "G91"
         elif name in ("G98", "G99"):
             self._return_to_initial = name == "G98"
-        elif name in ("M3", "M4", "M5", "S"):
+        elif name in ("M3", "M4", "M5"):
             self._set_spindle(name, words)
         elif name in ("M7", "M8", "M9"):
             self._coolant = {"M7": self._coolant | moves.COOLANT_MIST, "M8": self._coolant | moves.COOLANT_FLOOD,
