@@ -9,7 +9,8 @@
 #include "stock/vdb_tree.hpp"
 
 #include <openvdb/io/Archive.h>
-#include <openvdb/io/Stream.h>
+#include <openvdb/io/Compression.h>
+#include <openvdb/io/io.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/FastSweeping.h>
 
@@ -20,6 +21,7 @@
 #include <sstream>
 #include <streambuf>
 #include <sys/stat.h>
+#include <vector>
 
 namespace {
 
@@ -30,6 +32,8 @@ public:
         : file_(file), expected_(expected), interrupter_(interrupter)
     {
     }
+    /* Whether the caller may stop the work now; at first he may. */
+    void let_stop(bool may) { may_stop_ = may; }
 
 protected:
     std::streamsize xsgetn(char *to, std::streamsize count) override
@@ -60,7 +64,7 @@ private:
     {
         done_ += static_cast<double>(count);
         unreported_ += count;
-        if (unreported_ >= report_bytes) {
+        if (may_stop_ && unreported_ >= report_bytes) {
             unreported_ = 0;
             if (interrupter_.wasInterrupted(static_cast<int>(100 * std::min(done_ / expected_, 1.0)))) return 0;
         }
@@ -71,6 +75,7 @@ private:
     FILE *file_;
     double expected_, done_ = 0;
     size_t unreported_ = 0;
+    bool may_stop_ = true;
     swarf_interrupter &interrupter_;
 };
 
@@ -84,35 +89,30 @@ struct file_closer {
     void operator()(FILE *file) const { std::fclose(file); }
 };
 
-openvdb::GridPtrVecPtr read_grids(FILE *file, double size, swarf_interrupter &interrupter)
+/* What Archive::readGrid() does after the metadata: they and all before them are only ever read by the scan. */
+openvdb::FloatGrid::Ptr read_grid(FILE *file, const swarf_vdb_place &place, swarf_interrupter &interrupter)
 {
-    file_buffer buffer(file, size, interrupter);
+    file_buffer buffer(file, static_cast<double>(place.end - place.transform), interrupter);
     std::istream stream(&buffer);
     stream.exceptions(std::ios_base::failbit | std::ios_base::badbit | std::ios_base::eofbit);
-    openvdb::io::Stream archive(stream, /*delayLoad=*/false);
-    return archive.getGrids();
-}
-
-/* The first level set of floats, or null with what is there instead. */
-openvdb::FloatGrid::Ptr find_level_set(const openvdb::GridPtrVec &grids, std::string &there)
-{
-    std::ostringstream list;
-    for (const auto &grid : grids) {
-        if (!grid) continue;
-        const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
-        if (floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET) return floats;
-        list << (list.tellp() > 0 ? ", " : "") << '"' << grid->getName() << "\" (" << grid->valueType() << ", "
-             << openvdb::GridBase::gridClassToString(grid->getGridClass()) << ')';
-    }
-    there = list.str().empty() ? "no grids" : list.str().substr(0, 200);
-    return nullptr;
+    openvdb::io::StreamMetadata::Ptr settings(new openvdb::io::StreamMetadata);
+    openvdb::io::setStreamMetadataPtr(stream, settings, /*transfer=*/false);
+    openvdb::io::setVersion(stream, {place.library_major, place.library_minor}, place.format);
+    openvdb::io::setDataCompression(stream, place.compression);
+    const auto grid = openvdb::FloatGrid::create();
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    stream.seekg(static_cast<std::streamoff>(place.transform));
+    grid->readTransform(stream);
+    buffer.let_stop(false); /* an exception from here would leak nodes: InternalNode::readTopology() */
+    grid->tree().readTopology(stream, place.half != 0);
+    buffer.let_stop(true);
+    grid->tree().readBuffers(stream, place.half != 0);
+    return grid;
 }
 
 /* Uniform voxels along the axes are all that a stock knows. */
 swarf_status check_transform(const openvdb::FloatGrid &grid, const char *path, double &voxel)
 {
-    if (!grid.transform().isLinear())
-        return swarf_fail(SWARF_ERROR_FORMAT, "%s: its grid is not linear (a frustum); a stock has uniform voxels", path);
     const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
     voxel = matrix(0, 0);
     bool fine = std::isfinite(voxel) && voxel > 0;
@@ -139,6 +139,10 @@ void trim_band(openvdb::FloatGrid &grid, float band)
 
 bool all_finite(const openvdb::FloatTree &tree)
 {
+    auto tile = tree.cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if (!std::isfinite(tile.getValue())) return false;
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
         for (openvdb::Index i = 0; i < SWARF_LEAF_SIZE; i++)
             if (!std::isfinite(leaf->getValue(i))) return false;
@@ -160,15 +164,14 @@ swarf_status check_extent(const openvdb::FloatGrid &grid, const char *path, doub
     double origin[3];
     int32_t count[3];
     const swarf_status status = swarf_stock_layout(&extent, &options, origin, count);
-    return status == SWARF_OK ? SWARF_OK : swarf_fail_within(status, "%s", path);
+    return status == SWARF_OK ? SWARF_OK
+                              : swarf_fail_within(status == SWARF_ERROR_ARGUMENT ? SWARF_ERROR_FORMAT : status, "%s", path);
 }
 
 /* Bring any level set to the form a stock has. Wider bands are cut to three voxels, which changes no value inside
  * them; narrower ones are continued outwards by fast sweeping, which keeps the surface. */
-swarf_status normalise(openvdb::FloatGrid::Ptr &grid, const char *path)
+swarf_status normalise(openvdb::FloatGrid::Ptr &grid, const char *path, double voxel)
 {
-    double voxel;
-    SWARF_TRY(check_transform(*grid, path, voxel));
     const double width = static_cast<double>(grid->background()) / voxel;
     if (!(std::isfinite(width) && width >= 1))
         return swarf_fail(SWARF_ERROR_FORMAT, "%s: a band of %g voxels; at least 1 is needed", path, width);
@@ -189,6 +192,23 @@ swarf_status normalise(openvdb::FloatGrid::Ptr &grid, const char *path)
 
 } // namespace
 
+extern "C" swarf_status swarf_vdb_unpack(const void *chunk, size_t chunk_bytes, uint32_t compression, size_t bytes)
+{
+    return swarf_guard("packed values", [&]() -> swarf_status {
+        std::istringstream stream(std::string(static_cast<const char *>(chunk), chunk_bytes));
+        std::vector<char> values(bytes + 1); /* never a null buffer, which would mean to skip */
+        try {
+            if (compression & SWARF_VDB_BLOSC)
+                openvdb::io::bloscFromStream(stream, values.data(), bytes);
+            else
+                openvdb::io::unzipFromStream(stream, values.data(), bytes);
+        } catch (const openvdb::Exception &error) {
+            return swarf_fail(SWARF_ERROR_FORMAT, "%s", error.what());
+        }
+        return SWARF_OK;
+    });
+}
+
 extern "C" swarf_status swarf_stock_read(const char *path, const swarf_progress *progress, swarf_stock **out)
 {
     SWARF_REQUIRE(path && out, "stock: path or output missing");
@@ -199,23 +219,21 @@ extern "C" swarf_status swarf_stock_read(const char *path, const swarf_progress 
         if (!file || fstat(fileno(file.get()), &info) != 0)
             return swarf_fail(SWARF_ERROR_IO, "%s: cannot open: %s", path, std::strerror(errno));
         if (!S_ISREG(info.st_mode)) return swarf_fail(SWARF_ERROR_IO, "%s: not a file", path);
-        SWARF_TRY(swarf_vdb_scan(file.get(), static_cast<uint64_t>(info.st_size), path));
+        swarf_vdb_place place;
+        SWARF_TRY(swarf_vdb_scan(file.get(), static_cast<uint64_t>(info.st_size), path, &place));
         swarf_interrupter interrupter(progress);
-        openvdb::GridPtrVecPtr grids;
+        openvdb::FloatGrid::Ptr grid;
+        double voxel;
         try {
-            grids = read_grids(file.get(), static_cast<double>(info.st_size), interrupter);
+            grid = read_grid(file.get(), place, interrupter);
+            SWARF_TRY(check_transform(*grid, path, voxel));
         } catch (const std::ios_base::failure &) {
             SWARF_TRY(interrupter.status());
-            return swarf_fail(SWARF_ERROR_FORMAT, "%s: cut short or damaged: it ends before its data does", path);
-        } catch (const openvdb::Exception &error) {
-            return swarf_fail(SWARF_ERROR_FORMAT, "%s: not a .vdb file, or damaged: %s", path, error.what());
-        } catch (const std::exception &error) { /* lengths that no memory holds */
-            return swarf_fail(SWARF_ERROR_FORMAT, "%s: damaged: it claims impossible sizes (%s)", path, error.what());
+            return swarf_fail(SWARF_ERROR_FORMAT, "%s: cut short while it was read", path);
+        } catch (const openvdb::Exception &error) { /* a leaf that does not unpack, a singular map */
+            return swarf_fail(SWARF_ERROR_FORMAT, "%s: damaged: %s", path, error.what());
         }
-        std::string there;
-        openvdb::FloatGrid::Ptr grid = find_level_set(*grids, there);
-        if (!grid) return swarf_fail(SWARF_ERROR_FORMAT, "%s: no level set of floats in it, but %s", path, there.c_str());
-        SWARF_TRY(swarf_arena_run([&] { return normalise(grid, path); }));
+        SWARF_TRY(swarf_arena_run([&] { return normalise(grid, path, voxel); }));
         return swarf_stock_wrap(swarf_tree_adopt(grid), out);
     });
 }
