@@ -231,7 +231,8 @@ extern "C" swarf_status swarf_stock_read(const char *path, const swarf_progress 
             SWARF_TRY(interrupter.status());
             return swarf_fail(SWARF_ERROR_FORMAT, "%s: cut short while it was read", path);
         } catch (const openvdb::Exception &error) { /* a leaf that does not unpack, a singular map */
-            return swarf_fail(SWARF_ERROR_FORMAT, "%s: damaged: %s", path, error.what());
+            return swarf_fail(SWARF_ERROR_FORMAT, "%s: damaged before byte %lld: %s", path,
+                              static_cast<long long>(ftello(file.get())), error.what());
         }
         SWARF_TRY(swarf_arena_run([&] { return normalise(grid, path, voxel); }));
         return swarf_stock_wrap(swarf_tree_adopt(grid), out);

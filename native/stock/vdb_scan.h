@@ -16,9 +16,9 @@ enum { SWARF_VDB_ZIP = 1, SWARF_VDB_ACTIVE_MASK = 2, SWARF_VDB_BLOSC = 4 };
 
 /** A level set of floats in a file, and what OpenVDB must be told to read it from its transform on. */
 typedef struct swarf_vdb_place {
-    uint64_t transform; /**< byte where its transform starts; its tree follows */
-    uint64_t end;       /**< byte behind its last leaf */
-    uint32_t format;    /**< of the file, 222 to 225 */
+    uint64_t transform;                    /**< byte where its transform starts; its tree follows */
+    uint64_t end;                          /**< byte behind its last leaf */
+    uint32_t format;                       /**< of the file, 222 to 225 */
     uint32_t library_major, library_minor; /**< OpenVDB that wrote it */
     uint32_t compression;                  /**< SWARF_VDB_ bits */
     int half;                              /**< values are half floats */
