@@ -8,8 +8,9 @@
 /** 1 when the band of the block's faces reaches into the leaf whose low corner is at `corner`. */
 int swarf_block_reaches(const swarf_stock *stock, const int32_t corner[3]);
 
-/** Signed distances to the block in mm, clamped to the background, at the 512 voxels of a leaf. */
-void swarf_block_fill(const swarf_stock *stock, const int32_t corner[3], float values[SWARF_LEAF_SIZE]);
+/** A leaf of the block: signed distances in mm, clamped to the background; their active mask and least value. */
+void swarf_block_fill(const swarf_stock *stock, const int32_t corner[3], float values[SWARF_LEAF_SIZE],
+                      uint64_t mask[8], float *least);
 
 /** Set the tiles of a fresh tree: inside where the block or its band is. */
 swarf_status swarf_block_occupy(swarf_stock *stock);

@@ -84,7 +84,7 @@ static swarf_status cut_leaf(const struct cut_work *work, const swarf_column *co
     cut.values = stored ? stored : fresh;
     if (!stored) {
         cut.solid = !(work->stock->untouched && swarf_block_reaches(work->stock, corner));
-        if (!cut.solid) swarf_block_fill(work->stock, corner, fresh);
+        if (!cut.solid) swarf_block_fill(work->stock, corner, fresh, cut.mask, &cut.least);
     }
     if (!work->kernel->cut(work->body, column, list, count, &cut)) return SWARF_OK;
     if (cut.least >= SWARF_LEAF_DROP * cut.voxel) {
@@ -164,7 +164,7 @@ static void for_columns(const swarf_tree_layout *layout, const swarf_body *body,
             b = track->centre[k] + track->radius;
         }
         const int32_t last = layout->count[k] * NODE_COLUMNS - 1;
-        lo[k] = (int32_t)fmax(0, floor(fmax(-1, (a - reach) / COLUMN)));
+        lo[k] = (int32_t)fmin(last + 1, floor(fmax(0, (a - reach) / COLUMN)));
         hi[k] = (int32_t)fmin(last, floor(fmax(-1, fmin(last, (b + reach) / COLUMN))));
     }
     const int slanting = !track->is_arc && hi[0] - lo[0] > 1 && hi[1] - lo[1] > 1;

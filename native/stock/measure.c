@@ -7,6 +7,7 @@
 #include "base/status.h"
 #include "stock/block.h"
 #include "stock/leaf.h"
+#include "sweep/kernel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,24 +21,11 @@ struct walk {
     swarf_box *boxes; /* in voxels of the layout, per node */
 };
 
-static double leaf_occupancy(const float *values, float scale)
-{
-    /* eight sums side by side: the order of additions is fixed and the loop vectorises */
-    float sums[8] = {0};
-    for (int i = 0; i < SWARF_LEAF_SIZE; i += 8)
-        for (int k = 0; k < 8; k++) {
-            const float part = 0.5f - values[i + k] * scale;
-            sums[k] += part < 0 ? 0 : part > 1 ? 1 : part;
-        }
-    double total = 0;
-    for (int k = 0; k < 8; k++) total += (double)sums[k];
-    return total;
-}
-
 static swarf_status node_volume(void *context, size_t node)
 {
     const struct walk *walk = context;
     const swarf_stock *stock = walk->stock;
+    const swarf_kernel *kernel = swarf_kernel_current();
     const float scale = (float)(1 / walk->layout->voxel);
     const uint64_t *words = walk->layout->occupied + node * SWARF_NODE_WORDS;
     double total = 0;
@@ -46,13 +34,15 @@ static swarf_status node_volume(void *context, size_t node)
     for (unsigned slot = 0; slot < SWARF_NODE_SLOTS; slot++) {
         if (!(words[slot >> 6] >> (slot & 63) & 1)) continue;
         const float *values = swarf_tree_leaf(stock->tree, node, slot);
-        float face[SWARF_LEAF_SIZE];
+        _Alignas(64) float face[SWARF_LEAF_SIZE];
         swarf_leaf_corner(origin, slot, corner);
         if (!values && stock->untouched && swarf_block_reaches(stock, corner)) {
-            swarf_block_fill(stock, corner, face);
+            uint64_t mask[8];
+            float least;
+            swarf_block_fill(stock, corner, face, mask, &least);
             values = face;
         }
-        total += values ? leaf_occupancy(values, scale) : SWARF_LEAF_SIZE;
+        total += values ? kernel->occupancy(values, scale) : SWARF_LEAF_SIZE;
     }
     walk->volume[node] = total;
     return SWARF_OK;

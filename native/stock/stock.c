@@ -12,8 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Air kept around the material, so that the band fits; a whole leaf keeps leaf borders aligned with the faces. */
-enum { PADDING = SWARF_LEAF_DIM };
+/* Air kept around the material, in voxels. Half a leaf more than a whole one puts the faces of a block into the middle of
+ * leaves, so that one layer of them holds the band, not two: half the leaves and time for faces. */
+enum { PADDING = SWARF_LEAF_DIM + SWARF_LEAF_DIM / 2 };
 
 /* Bytes of a 128^3 node with its table, and of a leaf with buffer and allocator overhead (measured on OpenVDB 10). */
 static const double node_bytes = 33500, leaf_bytes = 2048 + 160;

@@ -32,7 +32,7 @@ void swarf_stock_leave(swarf_stock *stock);
 /** A stock around a tree it takes over (destroyed on failure). */
 swarf_status swarf_stock_wrap(swarf_tree *tree, swarf_stock **out);
 
-/** Lay out nodes for material in `box`: the index origin 8 voxels outside its low corner, voxel centres half a voxel
+/** Lay out nodes for material in `box`: the index origin 12 voxels outside its low corner, voxel centres half a voxel
  *  inside its faces. Refuses when the estimate exceeds the options' limit. */
 swarf_status swarf_stock_layout(const swarf_box *box, const swarf_stock_options *options, double origin[3],
                                 int32_t count[3]);

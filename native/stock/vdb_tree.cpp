@@ -192,6 +192,19 @@ extern "C" void swarf_tree_tile(swarf_tree *tree, size_t node, unsigned slot, in
     word = inside ? word | bit : word & ~bit;
 }
 
+extern "C" void swarf_tree_fill(swarf_tree *tree, size_t node, const int lo[3], const int hi[3])
+{
+    swarf_vdb_node &holder = *tree->nodes[node];
+    uint64_t *words = &tree->layout.occupied[node * SWARF_NODE_WORDS];
+    for (int x = lo[0]; x <= hi[0]; x++)
+        for (int y = lo[1]; y <= hi[1]; y++)
+            for (int z = lo[2]; z <= hi[2]; z++) {
+                const unsigned slot = static_cast<unsigned>(x << 8 | y << 4 | z);
+                holder.addTile(Index(slot), -tree->layout.background, false);
+                words[slot >> 6] |= uint64_t(1) << (slot & 63);
+            }
+}
+
 extern "C" void swarf_tree_size(const swarf_tree *tree, size_t *leaves, size_t *bytes)
 {
     size_t count = 0;

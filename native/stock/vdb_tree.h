@@ -56,6 +56,9 @@ void swarf_tree_leaf_mask(swarf_tree *tree, size_t node, unsigned slot, const ui
 /** Make a slot an outside (+background, not occupied) or inside tile (occupied), dropping its leaf. */
 void swarf_tree_tile(swarf_tree *tree, size_t node, unsigned slot, int inside);
 
+/** Make the slots lo .. hi (0 .. 15 along each axis) of a node without leaves inside tiles. */
+void swarf_tree_fill(swarf_tree *tree, size_t node, const int lo[3], const int hi[3]);
+
 /** Leaves in the tree, and bytes it holds. */
 void swarf_tree_size(const swarf_tree *tree, size_t *leaves, size_t *bytes);
 

@@ -102,22 +102,17 @@ static double chain_radius(const outline *o, const chain *c, double z)
     double least = INFINITY;
     for (size_t i = c->first; i < c->first + c->count; i++) {
         const face *f = &o->faces[i];
-        double angle = f->first, cr = f->r0, cz = f->z0, radius = 0;
-        if (f->radius > 0) {
-            const double s = (z - f->centre_z) / f->radius;
-            angle = s >= 1 ? 0.5 * M_PI : s <= -1 ? -0.5 * M_PI : asin(s);
-            angle = fmax(f->first, fmin(f->last, angle));
-            cr = f->centre_r;
-            cz = f->centre_z;
-            radius = f->radius;
+        const double s = f->radius > 0 ? (z - f->centre_z) / f->radius : 0;
+        if (f->radius > 0 && s >= sin(f->first) && s <= sin(f->last)) {
+            least = fmin(least, f->centre_r + f->radius * sqrt(fmax(0, 1 - s * s)));
+            continue;
         }
-        const double nr = cos(angle), nz = sin(angle);
-        const double rest = radius - nz * (z - cz);
-        if (nr < same_angle) {
-            if (rest < -tiny) return -1;
-        } else {
-            least = fmin(least, cr + rest / nr);
-        }
+        /* beyond its ends an arc goes on as its tangent there; a line is its own */
+        const int above = f->radius > 0 && s > sin(f->last);
+        const double angle = above ? f->last : f->first, r = above ? f->r1 : f->r0, height = above ? f->z1 : f->z0;
+        const double nr = cos(angle), rest = -sin(angle) * (z - height);
+        if (nr >= same_angle) least = fmin(least, r + rest / nr);
+        else if (rest < -tiny) return -1;
     }
     return least;
 }

@@ -16,6 +16,7 @@ static swarf_status reserve(swarf_column *column, size_t count)
     for (int i = 0; i < COLUMN_FIELDS; i++) ok &= (column->field[i] = malloc(room * sizeof(float))) != NULL;
     for (int i = 0; i < 5; i++) ok &= (column->list[i] = malloc(room * sizeof(int32_t))) != NULL;
     ok &= (column->bound = malloc(room * sizeof(float))) != NULL;
+    ok &= (column->floor = malloc(room * sizeof(float))) != NULL;
     ok &= (column->kind = malloc(room)) != NULL;
     if (!ok) {
         swarf_column_free(column);
@@ -30,6 +31,7 @@ void swarf_column_free(swarf_column *column)
     for (int i = 0; i < COLUMN_FIELDS; i++) free(column->field[i]);
     for (int i = 0; i < 5; i++) free(column->list[i]);
     free(column->bound);
+    free(column->floor);
     free(column->kind);
     memset(column, 0, sizeof *column);
 }

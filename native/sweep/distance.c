@@ -19,9 +19,15 @@ static swarf_status measure(const swarf_body *body, const swarf_track_list *list
             middle[k] = points[3 * i + (size_t)k] / voxel;
         }
         SWARF_TRY(swarf_column_fill(column, middle, list->tracks, NULL, list->count));
-        float found[128];
-        kernel->distance(body, column, column->list[0], column->count, 0, 0, 0, found);
-        out[i] = found[0] * (float)voxel;
+        /* as in a leaf, tracks beyond the band are left out and one that covers the point settles it */
+        const swarf_block here = {0, 0, 0, 0, 0};
+        size_t near = 0;
+        float found = SWARF_HALF_WIDTH;
+        if (kernel->cull(body, column, column->list[0], column->count, &here, column->list[1], &near))
+            found = -SWARF_HALF_WIDTH;
+        else if (near)
+            found = kernel->distance(body, column, column->list[1], near);
+        out[i] = found * (float)voxel;
     }
     return SWARF_OK;
 }

@@ -13,6 +13,11 @@ typedef struct swarf_block {
     float half, half_z;
 } swarf_block;
 
+/** A leaf of a block: per axis the signed distance to the slab between the two faces, in voxels. */
+typedef struct swarf_slabs {
+    float distance[3][8];
+} swarf_slabs;
+
 /** A leaf being cut. */
 typedef struct swarf_leaf_cut {
     float x, y, z;      /* low corner, relative to the column's middle */
@@ -31,10 +36,14 @@ typedef struct swarf_kernel {
     /** values = max(values, -sweep) over all tracks of the list; 0: nothing was within reach, outputs are not set. */
     int (*cut)(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count,
                swarf_leaf_cut *leaf);
-    /** Signed distances in voxels to the tracks at 4 x 4 columns of 8 voxels each, out[z * 16 + 4 * x + y], low corner
-     *  at (x, y, z) relative to the column's middle. */
-    void (*distance)(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count, float x,
-                     float y, float z, float out[128]);
+    /** Signed distance in voxels from the column's middle to the tracks of a list, as in a leaf. */
+    float (*distance)(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count);
+    /** Signed distances (mm, clamped to the background) to a block at the 512 voxels of a leaf, the mask of those in the
+     *  band, and the least. */
+    void (*block)(const swarf_slabs *slabs, float voxel, float background, float values[512], uint64_t mask[8],
+                  float *least);
+    /** Material in a leaf, in voxels: the sum of clamp(1/2 - value * scale, 0, 1), scale being 1 / voxel. */
+    double (*occupancy)(const float values[512], float scale);
 } swarf_kernel;
 
 /** The kernels of swarf_isa_current(). */

@@ -46,15 +46,18 @@ INLINE lanes plan_distance(const swarf_column *c, int32_t i, lanes x, lanes y)
 
 /* ---- culling ---------------------------------------------------------------------------------------------------- */
 
-/* Bounds of the distance to a swept cylinder (radius, lo .. hi above the tip) over a block, for sixteen tracks. */
+/* Bounds over a block of the distance to a swept cylinder, for sixteen tracks, and of the height of its bottom.
+ * `covers` is greater than -SWARF_HALF_WIDTH unless side and top leave the whole block to the bottom. */
 struct shaft_bounds {
     lanes least, most;
+    lanes floor_least, floor_most, covers;
 };
 
 struct sixteen {
     lanes x, y, ux, uy, s0, s1, m, im, z, rise; /* x, y: middle of the block relative to the base */
     lanes s, w;
-    lanes arc; /* plan distance of arcs, negative for lines */
+    lanes line_s, line_s0, line_s1; /* of lines; 0 for arcs, which have other things in those fields */
+    lanes arc;                      /* plan distance of arcs, negative for lines */
     mask is_arc;
 };
 
@@ -65,35 +68,39 @@ INLINE lanes shaft_lateral(const struct sixteen *t, float radius)
     return pick(t->is_arc, t->arc, line) - radius;
 }
 
-/* Lower bound: beside the cylinder, below its lowest or above its highest point, or beyond one of the two slanted
- * planes that hold its bottom and top. */
-INLINE lanes shaft_least(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi)
+/* Lower bound, for the enclosing cylinder (radius, lo .. hi above the tip): beside it, below its lowest or above its
+ * highest point, or beyond one of the two slanted planes that hold its bottom and top. */
+INLINE void shaft_least(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi,
+                        struct shaft_bounds *bounds)
 {
     const lanes bottom = t->z + lo, top = t->z + hi + t->rise;
     const lanes lateral = shaft_lateral(t, radius) - reach;
-    const lanes s0 = pick(t->is_arc, all(0), t->s0), s1 = pick(t->is_arc, all(0), t->s1);
-    const lanes below = t->m * s0 + bottom - (b->z + b->half_z), above = (b->z - b->half_z) - (t->m * s1 + top);
+    const lanes lowest = t->m * t->line_s0 + bottom;
+    const lanes below = lowest - (b->z + b->half_z), above = (b->z - b->half_z) - (t->m * t->line_s1 + top);
     const lanes support = t->m * t->im * reach + t->im * b->half_z;
-    const lanes s = pick(t->is_arc, all(0), t->s);
-    const lanes under = (t->m * (s - radius) + bottom - b->z) * t->im - support;
-    const lanes over = (all(b->z) - (t->m * (s + radius) + top)) * t->im - support;
-    return maximum(maximum(lateral, maximum(below, above)), maximum(under, over));
+    const lanes plane = t->m * (t->line_s - radius) + bottom;
+    const lanes under = (plane - b->z) * t->im - support;
+    const lanes over = (all(b->z) - (t->m * (t->line_s + radius) + top)) * t->im - support;
+    bounds->least = maximum(maximum(lateral, maximum(below, above)), maximum(under, over));
+    bounds->floor_least = maximum(lowest, plane - t->m * reach);
 }
 
-/* Upper bound: the deepest point of the block's side, bottom and top. */
-INLINE lanes shaft_most(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi)
+/* Upper bound, for a cylinder inside: the deepest point of the block's side, bottom and top. */
+INLINE void shaft_most(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi,
+                       struct shaft_bounds *bounds)
 {
     const lanes bottom = t->z + lo, top = t->z + hi + t->rise;
     const lanes lateral = shaft_lateral(t, radius) + reach;
     const lanes aside = maximum(t->w, all(0) - t->w) + reach;
     const lanes half = root(maximum(all(0), all(radius * radius) - aside * aside)); /* half chord at the far side */
-    const lanes s0 = pick(t->is_arc, all(0), t->s0), s1 = pick(t->is_arc, all(0), t->s1);
-    const lanes highest_bottom = t->m * clamped(t->s + reach - half, s0, s1) + bottom;
-    const lanes lowest_top = t->m * clamped(t->s - reach + half, s0, s1) + top;
+    const lanes highest_bottom = t->m * clamped(t->line_s + reach - half, t->line_s0, t->line_s1) + bottom;
+    const lanes lowest_top = t->m * clamped(t->line_s - reach + half, t->line_s0, t->line_s1) + top;
     lanes below = highest_bottom - (b->z - b->half_z), above = (b->z + b->half_z) - lowest_top;
     below = pick(less(below, all(0)), below * t->im, below);
     above = pick(less(above, all(0)), above * t->im, above);
-    return maximum(lateral, maximum(below, above));
+    bounds->most = maximum(lateral, maximum(below, above));
+    bounds->floor_most = highest_bottom;
+    bounds->covers = maximum(lateral, above);
 }
 
 /* Distance from the middle of the block to sixteen tracks of the ball's centre, less the radius. */
@@ -127,6 +134,10 @@ INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, co
     t.s = t.x * t.ux + t.y * t.uy;
     t.w = t.y * t.ux - t.x * t.uy;
     t.arc = all(-1);
+    t.is_arc = less(all(0), all(0));
+    t.line_s = t.s;
+    t.line_s0 = t.s0;
+    t.line_s1 = t.s1;
     if (c->arcs) {
         float plan[LANES];
         for (int k = 0; k < LANES; k++) {
@@ -134,8 +145,11 @@ INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, co
             if (c->kind[at[k]] & TRACK_ARC) plan[k] = arc_distance(c, at[k], all(b->x), all(b->y))[0];
         }
         t.arc = load(plan);
+        t.is_arc = less(all(-0.5f), t.arc);
+        t.line_s = pick(t.is_arc, all(0), t.s);
+        t.line_s0 = pick(t.is_arc, all(0), t.s0);
+        t.line_s1 = pick(t.is_arc, all(0), t.s1);
     }
-    t.is_arc = less(all(-0.5f), t.arc);
     return t;
 }
 
@@ -146,39 +160,53 @@ static int cull(const swarf_body *body, const swarf_column *c, const int32_t *in
     const float corner = sqrtf(reach * reach + b->half_z * b->half_z);
     const int ball = body->kind == SWARF_BODY_BALL;
     const float lo = ball ? body->core_lo : body->z_lo;
-    float *bound = c->bound;
+    float *bound = c->bound, *floor = c->floor;
     lanes best = all(far_away);
-    size_t kept = 0;
+    size_t kept = 0, champion = SIZE_MAX;
+    float champion_floor = far_away;
     for (size_t i = 0; i < count; i += LANES) {
         const int32_t *at = in + i;
         const struct sixteen t = gather_tracks(c, at, b);
-        lanes least = shaft_least(&t, b, reach, body->radius, lo, body->z_hi);
-        lanes most = shaft_most(&t, b, reach, body->core_radius, body->core_lo, body->core_hi);
+        struct shaft_bounds bounds;
+        shaft_least(&t, b, reach, body->radius, lo, body->z_hi, &bounds);
+        shaft_most(&t, b, reach, body->core_radius, body->core_lo, body->core_hi, &bounds);
         if (ball) {
             const lanes capsule = capsule_distance(c, at, &t, b, body->radius, body->core_lo);
-            least = minimum(least, capsule - corner);
-            most = minimum(most, capsule + corner);
+            bounds.least = minimum(bounds.least, capsule - corner);
+            bounds.most = minimum(bounds.most, capsule + corner);
         }
         const unsigned valid = count - i >= LANES ? 0xffffu : (1u << (count - i)) - 1;
-        if (bits(less(most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
-        unsigned keep = bits(less(least, all(SWARF_HALF_WIDTH))) & valid;
+        if (bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
+        unsigned keep = bits(less(bounds.least, all(SWARF_HALF_WIDTH))) & valid;
         if (!keep) continue;
-        float lows[LANES], highs[LANES];
-        store(lows, least);
-        store(highs, most);
+        float lows[LANES], highs[LANES], floors[LANES], ceilings[LANES];
+        store(lows, bounds.least);
+        store(highs, bounds.most);
+        store(floors, bounds.floor_least);
+        store(ceilings, pick(less(bounds.covers, all(-SWARF_HALF_WIDTH)), bounds.floor_most, all(far_away)));
         for (; keep; keep &= keep - 1) {
             const int lane = __builtin_ctz(keep);
             out[kept] = at[lane];
-            bound[kept++] = lows[lane];
+            bound[kept] = lows[lane];
+            floor[kept] = floors[lane];
+            if (ceilings[lane] < champion_floor) {
+                champion_floor = ceilings[lane];
+                champion = kept;
+            }
+            kept++;
             best = minimum(best, all(highs[lane]));
         }
     }
-    /* A track that is everywhere farther than another one is anywhere does not matter. */
     if (kept > 1) {
+        /* A track that is everywhere farther than another one is anywhere does not matter; nor does, of cylinders, one
+         * whose bottom is nowhere below that of another which covers the block from side to side. */
         const float limit = least_lane(best);
+        const int flat = body->kind == SWARF_BODY_CYLINDER;
         size_t left = 0;
-        for (size_t i = 0; i < kept; i++)
-            if (bound[i] <= limit) out[left++] = out[i];
+        for (size_t i = 0; i < kept; i++) {
+            const int matters = bound[i] <= limit && !(flat && floor[i] >= champion_floor);
+            if (matters || i == champion) out[left++] = out[i];
+        }
         kept = left;
     }
     for (int i = 0; i < COLUMN_SLACK; i++) out[kept + (size_t)i] = kept ? out[0] : 0;
@@ -187,64 +215,6 @@ static int cull(const swarf_body *body, const swarf_column *c, const int32_t *in
 }
 
 /* ---- distance to one track, 16 columns x 8 voxels ---------------------------------------------------------------- */
-
-/* Cylinders on lines. Tilted: side, lowest bottom, and the slanted surface that the trailing edge of the bottom leaves,
- * scaled to unit gradient; likewise at the top. Never switched between, so that the band has no tears. */
-INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
-                          lanes best[8])
-{
-    float *const *f = c->field;
-    const float radius = body->radius, m = f[COLUMN_M][i];
-    const float bottom = f[COLUMN_Z][i] + body->z_lo - z0, length = body->z_hi - body->z_lo + f[COLUMN_RISE][i];
-    const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
-    const float ux = f[COLUMN_UX][i], uy = f[COLUMN_UY][i], s0 = f[COLUMN_S0][i], s1 = f[COLUMN_S1][i];
-    const lanes s = ex * ux + ey * uy, w = ey * ux - ex * uy;
-    const lanes beyond = s - clamped(s, all(s0), all(s1)), w2 = w * w;
-    const lanes side = root(beyond * beyond + w2) - radius;
-    const float low = bottom + m * s0, high = bottom + length + m * s1;
-    if (m == 0) {
-        for (int z = 0; z < 8; z++) {
-            const float below = low - (float)z, above = (float)z - high;
-            best[z] = minimum(best[z], maximum(side, all(below > above ? below : above)));
-        }
-        return;
-    }
-    const lanes chord2 = maximum(all(0), all(radius * radius) - w2), chord = root(chord2);
-    const lanes scale = chord / root(chord2 + m * m * radius * radius);
-    const lanes under = ((s - chord) * m + bottom) * scale;
-    const lanes over = ((s + chord) * m + (bottom + length)) * scale;
-    for (int z = 0; z < 8; z++) {
-        const float below = low - (float)z, above = (float)z - high;
-        const lanes ends = maximum(side, all(below > above ? below : above));
-        const lanes height = scale * (float)z;
-        best[z] = minimum(best[z], maximum(ends, maximum(under - height, height - over)));
-    }
-}
-
-/* Balls on lines: the shaft from the centre up, and the capsule's squared distance, rooted once at the end. */
-INLINE void ball_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
-                      lanes best[8], lanes capsule[8])
-{
-    float *const *f = c->field;
-    const float centre = f[COLUMN_Z][i] + body->core_lo - z0, m = f[COLUMN_M][i];
-    const float lowest = centre + m * f[COLUMN_S0][i], highest = centre + m * f[COLUMN_S1][i] + f[COLUMN_RISE][i];
-    if (highest + SWARF_HALF_WIDTH > 0) {
-        const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
-        const lanes along = ex * f[COLUMN_DX][i] + ey * f[COLUMN_DY][i], flat = ex * ex + ey * ey;
-        const lanes t0 = all(f[COLUMN_T0][i]), t1 = all(f[COLUMN_T1][i]);
-        const float dz = f[COLUMN_DZ][i];
-        for (int z = 0; z < 8; z++) {
-            const float ez = (float)z - centre;
-            const lanes q = along + ez * dz;
-            const lanes t = clamped(q, t0, t1);
-            capsule[z] = minimum(capsule[z], t * (t - (q + q)) + (flat + ez * ez));
-        }
-    }
-    if (lowest - SWARF_HALF_WIDTH < 7) {
-        const swarf_body shaft = {.radius = body->radius, .z_lo = body->core_lo, .z_hi = body->z_hi};
-        cylinder_line(&shaft, c, i, x, y, z0, best);
-    }
-}
 
 /* One piece over a whole column of eight voxels at plan distance rho; heights relative to the tip start at `base`. */
 INLINE void level_piece(const swarf_piece *p, lanes rho, float base, lanes value[8])
@@ -265,7 +235,7 @@ INLINE void level_piece(const swarf_piece *p, lanes rho, float base, lanes value
 
 /* Any body where the height of the tip does not depend on the place: level lines, level arcs, plunges. The least plan
  * distance is the nearest moment; of a plunge the lower border counts at its low end, the upper at its high end. */
-INLINE void general_level(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
+static __attribute__((noinline)) void general_level(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
                           lanes best[8])
 {
     float *const *f = c->field;
@@ -348,8 +318,8 @@ enum { SEARCH_STEPS = 28 };
 /* Any body on a tilted line: phi is convex in t, its minimum is bracketed by the sign of its slope and closed in on by
  * bisection and by the crossing of the tangents (exact at once where two pieces meet). The gradient of the minimum is the
  * mix of both ends' that stands across the track; dividing by its length makes edges sweep with unit gradient. */
-INLINE void general_tilted(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
-                           lanes best[8])
+static __attribute__((noinline)) void general_tilted(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
+                           int voxels, lanes best[8])
 {
     float *const *f = c->field;
     const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
@@ -360,7 +330,7 @@ INLINE void general_tilted(const swarf_body *body, const swarf_column *c, int32_
     const float margin = SWARF_HALF_WIDTH + 1, reach = body->radius + margin;
     const lanes from = maximum(all(f[COLUMN_T0][i]), (tilt.s - reach) / tilt.run);
     const lanes until = minimum(all(f[COLUMN_T1][i]), (tilt.s + reach) / tilt.run);
-    for (int z = 0; z < 8; z++) {
+    for (int z = 0; z < voxels; z++) {
         tilt.height = all(z0 + (float)z - f[COLUMN_Z][i]);
         const lanes first = maximum(from, (tilt.height - (body->z_hi + margin)) / tilt.rise);
         const lanes last = minimum(until, (tilt.height - (body->z_lo - margin)) / tilt.rise);
@@ -399,10 +369,72 @@ INLINE void general_tilted(const swarf_body *body, const swarf_column *c, int32_
     }
 }
 
+/* Cylinders on lines. Tilted: side, lowest bottom, and the slanted surface that the trailing edge of the bottom leaves,
+ * scaled to unit gradient; likewise at the top. Never switched between, so that the band has no tears. `seam`: the bottom
+ * lies inside of something else and only has to be on the right side. */
+INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0, int seam,
+                          lanes best[8])
+{
+    float *const *f = c->field;
+    const float radius = body->radius, m = f[COLUMN_M][i];
+    const float bottom = f[COLUMN_Z][i] + body->z_lo - z0, length = body->z_hi - body->z_lo + f[COLUMN_RISE][i];
+    const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
+    const float ux = f[COLUMN_UX][i], uy = f[COLUMN_UY][i], s0 = f[COLUMN_S0][i], s1 = f[COLUMN_S1][i];
+    const lanes s = ex * ux + ey * uy, w = ey * ux - ex * uy;
+    const lanes beyond = s - clamped(s, all(s0), all(s1)), w2 = w * w;
+    const lanes side = root(beyond * beyond + w2) - radius;
+    const float low = bottom + m * s0, high = bottom + length + m * s1;
+    if (m == 0) {
+        for (int z = 0; z < 8; z++) {
+            const float below = low - (float)z, above = (float)z - high;
+            best[z] = minimum(best[z], maximum(side, all(below > above ? below : above)));
+        }
+        return;
+    }
+    const int top_near = low + length - SWARF_HALF_WIDTH < 7; /* of a long cutter it mostly is far above */
+    const lanes chord2 = maximum(all(0), all(radius * radius) - w2), chord = root(chord2);
+    const lanes scale = chord / root(chord2 + m * m * radius * radius), bottom_scale = seam ? all(1) : scale;
+    const lanes under = ((s - chord) * m + bottom) * bottom_scale;
+    for (int z = 0; z < 8; z++) {
+        const lanes value = maximum(maximum(side, all(low - (float)z)), under - bottom_scale * (float)z);
+        if (!top_near) best[z] = minimum(best[z], value);
+        else {
+            const lanes over = ((s + chord) * m + (bottom + length)) * scale;
+            best[z] = minimum(best[z], maximum(value, maximum(all((float)z - high), scale * (float)z - over)));
+        }
+    }
+}
+
+/* Balls on lines: the shaft from the centre up, and the capsule's squared distance, rooted once at the end. */
+INLINE void ball_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
+                      lanes best[8], lanes capsule[8])
+{
+    float *const *f = c->field;
+    const float centre = f[COLUMN_Z][i] + body->core_lo - z0, m = f[COLUMN_M][i];
+    const float lowest = centre + m * f[COLUMN_S0][i], highest = centre + m * f[COLUMN_S1][i] + f[COLUMN_RISE][i];
+    if (highest + SWARF_HALF_WIDTH > 0) {
+        const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
+        const lanes along = ex * f[COLUMN_DX][i] + ey * f[COLUMN_DY][i], flat = ex * ex + ey * ey;
+        const lanes t0 = all(f[COLUMN_T0][i]), t1 = all(f[COLUMN_T1][i]);
+        const float dz = f[COLUMN_DZ][i];
+        for (int z = 0; z < 8; z++) {
+            const float ez = (float)z - centre;
+            const lanes q = along + ez * dz;
+            const lanes t = clamped(q, t0, t1);
+            capsule[z] = minimum(capsule[z], t * (t - (q + q)) + (flat + ez * ez));
+        }
+    }
+    if (lowest - SWARF_HALF_WIDTH < 7) {
+        const swarf_body shaft = {.radius = body->radius, .z_lo = body->core_lo, .z_hi = body->z_hi};
+        cylinder_line(&shaft, c, i, x, y, z0, 1, best);
+    }
+}
+
 /* ---- all tracks of a list ---------------------------------------------------------------------------------------- */
 
+/* `voxels`: how many above each other are wanted, 8 or fewer; the others get any value. */
 INLINE void distance_group(const swarf_body *body, const swarf_column *c, const int32_t *list, size_t count, lanes x,
-                           lanes y, float z0, float out[128])
+                           lanes y, float z0, int voxels, float out[128])
 {
     lanes best[8], capsule[8];
     for (int z = 0; z < 8; z++) {
@@ -414,12 +446,12 @@ INLINE void distance_group(const swarf_body *body, const swarf_column *c, const 
         const int32_t i = list[k];
         const int kind = c->kind[i];
         if (body->kind == SWARF_BODY_GENERAL || kind & TRACK_ARC) {
-            if (kind & TRACK_TILTED) general_tilted(body, c, i, x, y, z0, best);
+            if (kind & TRACK_TILTED) general_tilted(body, c, i, x, y, z0, voxels, best);
             else general_level(body, c, i, x, y, z0, best);
         } else if (ball) {
             ball_line(body, c, i, x, y, z0, best, capsule);
         } else {
-            cylinder_line(body, c, i, x, y, z0, best);
+            cylinder_line(body, c, i, x, y, z0, 0, best);
         }
     }
     for (int z = 0; z < 8; z++) {
@@ -432,10 +464,11 @@ INLINE void distance_group(const swarf_body *body, const swarf_column *c, const 
 static const float lane_x[LANES] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 static const float lane_y[LANES] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 
-static void distance(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count, float x,
-                     float y, float z, float out[128])
+static float distance(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count)
 {
-    distance_group(body, column, list, count, load(lane_x) + x, load(lane_y) + y, z, out);
+    _Alignas(64) float found[128];
+    distance_group(body, column, list, count, all(0), all(0), 0, 1, found);
+    return found[0];
 }
 
 /* What becomes of the sixteen columns of a group. */
@@ -512,7 +545,7 @@ static int cut(const swarf_body *body, const swarf_column *c, const int32_t *lis
                 keep_group(leaf, &state, gx, gy);
                 continue;
             } else {
-                distance_group(body, c, near, near_count, load(lane_x) + x, load(lane_y) + y, leaf->z, found);
+                distance_group(body, c, near, near_count, load(lane_x) + x, load(lane_y) + y, leaf->z, 8, found);
                 merge_group(leaf, &state, gx, gy, found);
             }
             touched = 1;
@@ -532,4 +565,47 @@ static int cut(const swarf_body *body, const swarf_column *c, const int32_t *lis
     return 1;
 }
 
-const swarf_kernel KERNEL_NAME = {cull, cut, distance};
+/* ---- whole leaves ------------------------------------------------------------------------------------------------ */
+
+static void block(const swarf_slabs *slabs, float voxel, float background, float values[512], uint64_t active[8],
+                  float *least)
+{
+    const octet zero = all8(0), outside = all8(background), inside = all8(-background);
+    const octet up = load8(slabs->distance[2]), up_out = maximum8(up, zero);
+    octet low = outside;
+    unsigned char rows[64];
+    for (int x = 0; x < 8; x++) {
+        const float dx = slabs->distance[0][x], dx_out = dx > 0 ? dx : 0;
+        for (int y = 0; y < 8; y++) {
+            const float dy = slabs->distance[1][y], dy_out = dy > 0 ? dy : 0;
+            const octet square = up_out * up_out + (dx_out * dx_out + dy_out * dy_out);
+            const octet depth = minimum8(maximum8(up, all8(dx > dy ? dx : dy)), zero);
+            const octet value = maximum8(minimum8((depth + root8(square)) * voxel, outside), inside);
+            store8(values + x * 64 + y * 8, value);
+            low = minimum8(low, value);
+            rows[x * 8 + y] = (unsigned char)within8(value, outside);
+        }
+    }
+    memcpy(active, rows, sizeof rows);
+    float lows[8];
+    store8(lows, low);
+    *least = lows[0];
+    for (int k = 1; k < 8; k++) *least = lows[k] < *least ? lows[k] : *least;
+}
+
+static double occupancy(const float values[512], float scale)
+{
+    /* sixteen sums of 32 terms each: exact enough in float, in a fixed order */
+    octet sums[2] = {all8(0), all8(0)};
+    for (int i = 0; i < 512; i += 16)
+        for (int k = 0; k < 2; k++) {
+            const octet part = all8(0.5f) - load8(values + i + 8 * k) * scale;
+            sums[k] += maximum8(minimum8(part, all8(1)), all8(0));
+        }
+    double total = 0;
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 8; i++) total += (double)sums[k][i];
+    return total;
+}
+
+const swarf_kernel KERNEL_NAME = {cull, cut, distance, block, occupancy};

@@ -164,6 +164,7 @@ INLINE lanes gather(const float *from, const int32_t *at)
 #if defined(__AVX2__)
 INLINE octet minimum8(octet a, octet b) { return (octet)_mm256_min_ps((__m256)a, (__m256)b); }
 INLINE octet maximum8(octet a, octet b) { return (octet)_mm256_max_ps((__m256)a, (__m256)b); }
+INLINE octet root8(octet a) { return (octet)_mm256_sqrt_ps((__m256)a); }
 /* One bit per value with |a| < limit. */
 INLINE unsigned within8(octet a, octet limit)
 {
@@ -179,6 +180,11 @@ INLINE octet minimum8(octet a, octet b)
 INLINE octet maximum8(octet a, octet b)
 {
     for (int i = 0; i < 8; i++) a[i] = a[i] > b[i] ? a[i] : b[i];
+    return a;
+}
+INLINE octet root8(octet a)
+{
+    for (int i = 0; i < 8; i++) a[i] = sqrtf(a[i]);
     return a;
 }
 INLINE unsigned within8(octet a, octet limit)
