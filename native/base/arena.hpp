@@ -19,10 +19,10 @@ template <typename Body> auto swarf_arena_run(Body &&body)
     return arena.execute(std::forward<Body>(body));
 }
 
-/** A progress callback in the form OpenVDB asks for ("interrupter"): reports from the calling thread only, never falling,
- *  mapped to `from`..`to`; answers any thread whether to stop. */
+/** A progress callback in the form OpenVDB asks for ("interrupter"): reports from the calling thread only, never
+ * falling, mapped to `from`..`to`; answers any thread whether to stop. */
 class swarf_interrupter {
-public:
+  public:
     explicit swarf_interrupter(const swarf_progress *progress) : progress_(progress) {}
     void part(double from, double to)
     {
@@ -46,7 +46,7 @@ public:
         return stopped_ ? swarf_fail(SWARF_ERROR_CANCELLED, "cancelled") : SWARF_OK;
     }
 
-private:
+  private:
     const swarf_progress *progress_;
     std::thread::id caller_ = std::this_thread::get_id();
     std::atomic<bool> stopped_{false};

@@ -64,8 +64,8 @@ static swarf_status node_difference(void *context, size_t node)
     for (unsigned slot = 0; slot < SWARF_NODE_SLOTS; slot++) {
         if (!is_occupied(d->a_layout, node, slot)) continue;
         const int b_occupied = matched && is_occupied(d->b_layout, other, slot);
-        total += slot_difference(swarf_tree_leaf(d->a, node, slot), b_occupied ? swarf_tree_leaf(d->b, other, slot) : NULL,
-                                 b_occupied, scale);
+        total += slot_difference(swarf_tree_leaf(d->a, node, slot),
+                                 b_occupied ? swarf_tree_leaf(d->b, other, slot) : NULL, b_occupied, scale);
     }
     d->volume[node] = total;
     return SWARF_OK;

@@ -31,7 +31,8 @@ static swarf_status read_face(swarf_text *text, swarf_mesh_data *out)
     for (size_t corner = 0;; corner++) {
         const swarf_word word = swarf_text_word(text);
         if (word.length == 0 || word.at[0] == '#') {
-            if (corner < 3) return swarf_text_fail(text, (swarf_word){text->at, 0}, "a face with three corners or more");
+            if (corner < 3)
+                return swarf_text_fail(text, (swarf_word){text->at, 0}, "a face with three corners or more");
             return SWARF_OK;
         }
         const char *slash = memchr(word.at, '/', word.length);

@@ -51,9 +51,9 @@ static int type_of(swarf_word word, number_type *out)
     static const struct {
         const char *name;
         number_type type;
-    } names[] = {{"char", I8},   {"int8", I8},   {"uchar", U8},  {"uint8", U8},     {"short", I16},  {"int16", I16},
-                 {"ushort", U16}, {"uint16", U16}, {"int", I32},   {"int32", I32},    {"uint", U32},   {"uint32", U32},
-                 {"float", F32}, {"float32", F32}, {"double", F64}, {"float64", F64}};
+    } names[] = {{"char", I8},    {"int8", I8},     {"uchar", U8},   {"uint8", U8},   {"short", I16}, {"int16", I16},
+                 {"ushort", U16}, {"uint16", U16},  {"int", I32},    {"int32", I32},  {"uint", U32},  {"uint32", U32},
+                 {"float", F32},  {"float32", F32}, {"double", F64}, {"float64", F64}};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (swarf_word_is(word, names[i].name)) {
             *out = names[i].type;
@@ -68,13 +68,15 @@ static swarf_status read_property(reader *r)
         return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: property before any element", r->text.name, r->text.line);
     element *e = &r->elements[r->element_count - 1];
     if (e->property_count == MAX_PROPERTIES)
-        return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: more than %d properties", r->text.name, r->text.line, MAX_PROPERTIES);
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: more than %d properties", r->text.name, r->text.line,
+                          MAX_PROPERTIES);
     property p = {0};
     swarf_word word = swarf_text_word(&r->text);
     if (swarf_word_is(word, "list")) {
         p.is_list = 1;
         word = swarf_text_word(&r->text);
-        if (!type_of(word, &p.count_type) || p.count_type >= F32) return swarf_text_fail(&r->text, word, "a whole number type");
+        if (!type_of(word, &p.count_type) || p.count_type >= F32)
+            return swarf_text_fail(&r->text, word, "a whole number type");
         word = swarf_text_word(&r->text);
     }
     if (!type_of(word, &p.type)) return swarf_text_fail(&r->text, word, "a number type");
@@ -92,7 +94,8 @@ static swarf_status read_property(reader *r)
 static swarf_status read_element(reader *r)
 {
     if (r->element_count == MAX_ELEMENTS)
-        return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: more than %d elements", r->text.name, r->text.line, MAX_ELEMENTS);
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: more than %d elements", r->text.name, r->text.line,
+                          MAX_ELEMENTS);
     element *e = &r->elements[r->element_count];
     const swarf_word name = swarf_text_word(&r->text);
     e->is_vertex = swarf_word_is(name, "vertex");
@@ -164,7 +167,8 @@ static swarf_status read_binary_value(reader *r, number_type type, double *out)
 {
     const size_t size = type_size[type];
     if ((size_t)(r->text.end - r->text.at) < size)
-        return swarf_fail(SWARF_ERROR_FORMAT, "%s: cut short: the file ends in %s %zu", r->text.name, r->what, r->number + 1);
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s: cut short: the file ends in %s %zu", r->text.name, r->what,
+                          r->number + 1);
     const unsigned char *b = (const unsigned char *)r->text.at;
     uint64_t bits = 0;
     for (size_t i = 0; i < size; i++) bits |= (uint64_t)b[r->big_endian ? size - 1 - i : i] << (8 * i);
@@ -198,13 +202,14 @@ static swarf_status read_list(reader *r, const property *p, swarf_mesh_data *out
     uint32_t first = 0, last = 0;
     SWARF_TRY(read_value(r, p->count_type, &count));
     if (!(count >= 0 && count <= UINT32_MAX) || (p->role == CORNERS && count < 3))
-        return swarf_fail(SWARF_ERROR_FORMAT, "%s: %s %zu has a list of %g", r->text.name, r->what, r->number + 1, count);
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s: %s %zu has a list of %g", r->text.name, r->what, r->number + 1,
+                          count);
     for (uint32_t i = 0; i < (uint32_t)count; i++) {
         SWARF_TRY(read_value(r, p->type, &value));
         if (p->role != CORNERS) continue;
         if (!(value >= 0 && value < (double)out->vertex_count && value < UINT32_MAX) || value != floor(value))
-            return swarf_fail(SWARF_ERROR_FORMAT, "%s: %s %zu uses vertex %.17g of %zu", r->text.name, r->what, r->number + 1,
-                              value, out->vertex_count);
+            return swarf_fail(SWARF_ERROR_FORMAT, "%s: %s %zu uses vertex %.17g of %zu", r->text.name, r->what,
+                              r->number + 1, value, out->vertex_count);
         const uint32_t vertex = (uint32_t)value;
         if (i >= 2) SWARF_TRY(swarf_mesh_data_triangle(out, first, last, vertex));
         if (i == 0) first = vertex;
@@ -295,10 +300,11 @@ static swarf_status write_records(const swarf_triangles *t, size_t count, size_t
 
 swarf_status swarf_ply_write(const swarf_triangles *t, FILE *stream, const swarf_progress *progress)
 {
-    fprintf(stream,
-            "ply\nformat binary_little_endian 1.0\ncomment Swarf, mm\nelement vertex %zu\nproperty float x\n"
-            "property float y\nproperty float z\nelement face %zu\nproperty list uchar uint vertex_indices\nend_header\n",
-            t->vertex_count, t->triangle_count);
+    fprintf(
+        stream,
+        "ply\nformat binary_little_endian 1.0\ncomment Swarf, mm\nelement vertex %zu\nproperty float x\n"
+        "property float y\nproperty float z\nelement face %zu\nproperty list uchar uint vertex_indices\nend_header\n",
+        t->vertex_count, t->triangle_count);
     SWARF_TRY(write_records(t, t->vertex_count, 12, put_vertex, stream, progress, 0, 0.3));
     return write_records(t, t->triangle_count, 13, put_face, stream, progress, 0.3, 1);
 }

@@ -43,8 +43,9 @@ static swarf_status read_binary(const char *text, size_t length, const char *nam
 {
     const size_t there = (length - HEADER) / RECORD, claimed = read_u32(text + 80);
     if (claimed > there)
-        return swarf_fail(SWARF_ERROR_FORMAT, "%s: cut short: its header claims %zu triangles, but %zu bytes hold only %zu",
-                          name, claimed, length, there);
+        return swarf_fail(SWARF_ERROR_FORMAT,
+                          "%s: cut short: its header claims %zu triangles, but %zu bytes hold only %zu", name, claimed,
+                          length, there);
     for (size_t i = 0; i < claimed; i++) {
         const char *record = text + HEADER + i * RECORD;
         for (int k = 0; k < 3; k++) {
@@ -53,8 +54,8 @@ static swarf_status read_binary(const char *text, size_t length, const char *nam
                 const uint32_t bits = read_u32(record + 12 + 12 * k + 4 * c);
                 memcpy(&p[c], &bits, sizeof bits);
                 if (!isfinite(p[c]))
-                    return swarf_fail(SWARF_ERROR_FORMAT, "%s: triangle %zu: coordinate %c of corner %d is not finite", name,
-                                      i + 1, "xyz"[c], k + 1);
+                    return swarf_fail(SWARF_ERROR_FORMAT, "%s: triangle %zu: coordinate %c of corner %d is not finite",
+                                      name, i + 1, "xyz"[c], k + 1);
             }
             SWARF_TRY(swarf_mesh_data_vertex(out, p));
         }
@@ -119,7 +120,8 @@ static swarf_status read_text(const char *data, size_t length, const char *name,
 swarf_status swarf_stl_read(const char *text, size_t length, const char *name, swarf_mesh_data *out)
 {
     size_t skip = 0;
-    while (skip < length && (text[skip] == ' ' || text[skip] == '\n' || text[skip] == '\r' || text[skip] == '\t')) skip++;
+    while (skip < length && (text[skip] == ' ' || text[skip] == '\n' || text[skip] == '\r' || text[skip] == '\t'))
+        skip++;
     /* many programs start a binary header with "solid": a text has no 0 bytes */
     const int is_text = strncmp(text + skip, "solid", 5) == 0 && !swarf_stl_is_binary(text, length) &&
                         !memchr(text, 0, length < 4096 ? length : 4096);
@@ -155,7 +157,8 @@ static void write_record(const swarf_triangles *t, size_t i, unsigned char *reco
 swarf_status swarf_stl_write(const swarf_triangles *t, FILE *stream, const swarf_progress *progress)
 {
     if (t->triangle_count > UINT32_MAX)
-        return swarf_fail(SWARF_ERROR_ARGUMENT, "mesh: %zu triangles are more than an STL file can count", t->triangle_count);
+        return swarf_fail(SWARF_ERROR_ARGUMENT, "mesh: %zu triangles are more than an STL file can count",
+                          t->triangle_count);
     unsigned char *buffer = malloc((size_t)CHUNK * RECORD);
     if (!buffer) return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
     unsigned char header[HEADER] = "Swarf binary STL, mm"; /* must not start with "solid" */

@@ -114,5 +114,6 @@ swarf_status swarf_text_fail(const swarf_text *text, swarf_word word, const char
         return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: %s expected, but the %s ends", text->name, text->line, wanted,
                           text->at >= text->end ? "file" : "line");
     const int shown = word.length < 40 ? (int)word.length : 40;
-    return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: '%.*s': %s expected", text->name, text->line, shown, word.at, wanted);
+    return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: '%.*s': %s expected", text->name, text->line, shown, word.at,
+                      wanted);
 }

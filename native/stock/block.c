@@ -77,8 +77,10 @@ static swarf_status finish_node(void *context, size_t node)
         uint64_t mask[8];
         float least;
         swarf_block_fill(stock, corner, values, mask, &least);
-        if (least >= drop) swarf_tree_tile(stock->tree, node, slot, 0);
-        else SWARF_TRY(swarf_tree_leaf_add(stock->tree, node, slot, values, mask));
+        if (least >= drop)
+            swarf_tree_tile(stock->tree, node, slot, 0);
+        else
+            SWARF_TRY(swarf_tree_leaf_add(stock->tree, node, slot, values, mask));
     }
     return SWARF_OK;
 }

@@ -2,9 +2,9 @@
 /* Cutting: stock = max(stock, -sweep) over all paths of a batch at once.
  *
  * The tracks of the batch are binned by columns of 32 x 32 voxels. A column is one piece of work: its leaves share no
- * words of any mask with another column's, so that there are no locks and the order of columns does not matter. Within it
- * blocks of 32^3, 16^3 and 8^3 voxels are visited with ever shorter lists of tracks; air is skipped by occupancy, a block
- * that one track covers is removed whole, and a leaf is read and written once however many tracks meet it. */
+ * words of any mask with another column's, so that there are no locks and the order of columns does not matter. Within
+ * it blocks of 32^3, 16^3 and 8^3 voxels are visited with ever shorter lists of tracks; air is skipped by occupancy, a
+ * block that one track covers is removed whole, and a leaf is read and written once however many tracks meet it. */
 #include "stock/cut.h"
 
 #include "base/memory.h"
@@ -41,8 +41,8 @@ struct place {
 
 static struct place place_of(const swarf_tree_layout *layout, int32_t x, int32_t y, int32_t z)
 {
-    const size_t node = ((size_t)(x >> 4) * (size_t)layout->count[1] + (size_t)(y >> 4)) * (size_t)layout->count[2] +
-                        (size_t)(z >> 4);
+    const size_t node =
+        ((size_t)(x >> 4) * (size_t)layout->count[1] + (size_t)(y >> 4)) * (size_t)layout->count[2] + (size_t)(z >> 4);
     return (struct place){node, (unsigned)(x & 15) << 8 | (unsigned)(y & 15) << 4 | (unsigned)(z & 15)};
 }
 
@@ -62,8 +62,7 @@ static int occupied(const swarf_tree_layout *layout, int32_t x, int32_t y, int32
 static void remove_cube(const struct cut_work *work, int32_t x, int32_t y, int32_t z, int edge)
 {
     for (int i = 0; i < edge * edge * edge; i++) {
-        const struct place place =
-            place_of(work->layout, x + i / (edge * edge), y + i / edge % edge, z + i % edge);
+        const struct place place = place_of(work->layout, x + i / (edge * edge), y + i / edge % edge, z + i % edge);
         const uint64_t word = work->layout->occupied[place.node * SWARF_NODE_WORDS + (place.slot >> 6)];
         if (word >> (place.slot & 63) & 1) swarf_tree_tile(work->stock->tree, place.node, place.slot, 0);
     }
@@ -129,8 +128,7 @@ static swarf_status cut_column(void *context, size_t index)
     const int32_t *numbers = work->numbers + work->starts[number];
     const size_t count = (size_t)(work->starts[number + 1] - work->starts[number]);
     swarf_column *column = &work->scratch[swarf_parallel_slot()];
-    const double middle[3] = {x * COLUMN + 15.5, y * COLUMN + 15.5,
-                              0.5 * SWARF_NODE_DIM * work->layout->count[2]};
+    const double middle[3] = {x * COLUMN + 15.5, y * COLUMN + 15.5, 0.5 * SWARF_NODE_DIM * work->layout->count[2]};
     SWARF_TRY(swarf_column_fill(column, middle, work->tracks, numbers, count));
     double lo = INFINITY, hi = -INFINITY;
     for (size_t i = 0; i < count; i++) {
@@ -148,8 +146,8 @@ static swarf_status cut_column(void *context, size_t index)
 
 /* Call `see` for every column that the track may reach: those in its box, and of a long slanting line those near it. */
 typedef void (*column_fn)(void *context, int32_t column);
-static void for_columns(const swarf_tree_layout *layout, const swarf_body *body, const swarf_track *track, column_fn see,
-                        void *context)
+static void for_columns(const swarf_tree_layout *layout, const swarf_body *body, const swarf_track *track,
+                        column_fn see, void *context)
 {
     const double reach = (double)body->radius + SWARF_HALF_WIDTH;
     if (track->point[2] + body->z_lo - SWARF_HALF_WIDTH > (double)layout->count[2] * SWARF_NODE_DIM ||
@@ -213,7 +211,8 @@ static swarf_status fill_bins(const swarf_tree_layout *layout, const swarf_body 
     if (!bins->starts) return swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
     for (size_t i = 0; i < list->count; i++) for_columns(layout, body, &list->tracks[i], count_one, bins);
     if (bins->total > INT32_MAX || list->count > INT32_MAX)
-        return swarf_fail(SWARF_ERROR_MEMORY, "stock: %zu moves at once are too many; cut in smaller batches", list->count);
+        return swarf_fail(SWARF_ERROR_MEMORY, "stock: %zu moves at once are too many; cut in smaller batches",
+                          list->count);
     for (size_t i = 0; i < columns; i++) bins->column_count += bins->starts[i + 1] > 0;
     for (size_t i = 0; i < columns; i++) bins->starts[i + 1] += bins->starts[i];
     bins->numbers = malloc((bins->total + 1) * sizeof *bins->numbers);
@@ -239,10 +238,12 @@ static swarf_status cut_tracks(swarf_stock *stock, const swarf_body *body, const
     struct bins bins = {0};
     const int threads = swarf_threads();
     swarf_column *scratch = calloc((size_t)threads, sizeof *scratch);
-    swarf_status status = scratch ? fill_bins(layout, body, list, &bins) : swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
+    swarf_status status =
+        scratch ? fill_bins(layout, body, list, &bins) : swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
     if (status == SWARF_OK) {
-        struct cut_work work = {stock, layout, swarf_kernel_current(), body, list->tracks, bins.columns, bins.starts,
-                                bins.numbers, layout->count[1] * NODE_COLUMNS, scratch};
+        struct cut_work work = {
+            stock,       layout,       swarf_kernel_current(),          body,   list->tracks, bins.columns,
+            bins.starts, bins.numbers, layout->count[1] * NODE_COLUMNS, scratch};
         status = swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, to);
     }
     for (int i = 0; scratch && i < threads; i++) swarf_column_free(&scratch[i]);

@@ -34,7 +34,8 @@ static inline void swarf_node_corner(const swarf_tree_layout *layout, size_t nod
 }
 
 /** Active mask (values inside the band) and least value of a leaf. */
-static inline void swarf_leaf_mask(const float values[SWARF_LEAF_SIZE], float background, uint64_t mask[8], float *least)
+static inline void swarf_leaf_mask(const float values[SWARF_LEAF_SIZE], float background, uint64_t mask[8],
+                                   float *least)
 {
     float low = values[0];
     for (int x = 0; x < 8; x++) {

@@ -189,9 +189,11 @@ float swarf_stock_value(const swarf_stock *stock, const int32_t ijk[3])
     const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     for (int k = 0; k < 3; k++)
         if (ijk[k] < 0 || ijk[k] >= layout->count[k] * SWARF_NODE_DIM) return layout->background;
-    const size_t node = ((size_t)(ijk[0] >> 7) * (size_t)layout->count[1] + (size_t)(ijk[1] >> 7)) *
-                            (size_t)layout->count[2] + (size_t)(ijk[2] >> 7);
-    const unsigned slot = (unsigned)(ijk[0] >> 3 & 15) << 8 | (unsigned)(ijk[1] >> 3 & 15) << 4 | (unsigned)(ijk[2] >> 3 & 15);
+    const size_t node =
+        ((size_t)(ijk[0] >> 7) * (size_t)layout->count[1] + (size_t)(ijk[1] >> 7)) * (size_t)layout->count[2] +
+        (size_t)(ijk[2] >> 7);
+    const unsigned slot =
+        (unsigned)(ijk[0] >> 3 & 15) << 8 | (unsigned)(ijk[1] >> 3 & 15) << 4 | (unsigned)(ijk[2] >> 3 & 15);
     const float *values = swarf_tree_leaf(stock->tree, node, slot);
     if (values) return values[(ijk[0] & 7) * 64 + (ijk[1] & 7) * 8 + (ijk[2] & 7)];
     const int inside = (int)(layout->occupied[node * SWARF_NODE_WORDS + (slot >> 6)] >> (slot & 63) & 1);

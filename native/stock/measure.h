@@ -5,8 +5,8 @@
 
 #include "stock/stock.h"
 
-/** Volume in mm3 of a stock that has been entered (untouched faces count by their formula): every voxel counts by clamp(1/2 - d / h, 0, 1), which
- *  is exact for planes along the axes and of second order for curved faces. */
+/** Volume in mm3 of a stock that has been entered (untouched faces count by their formula): every voxel counts by
+ * clamp(1/2 - d / h, 0, 1), which is exact for planes along the axes and of second order for curved faces. */
 swarf_status swarf_measure_volume(const swarf_stock *stock, double *out);
 
 #endif

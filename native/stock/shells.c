@@ -112,7 +112,8 @@ static swarf_status drop_duplicates(swarf_shells *s)
     qsort(keys, count, sizeof *keys, compare_faces);
     for (size_t i = 0, j; i < count; i = j) {
         ptrdiff_t balance = 0;
-        for (j = i; j < count && memcmp(keys[j].v, keys[i].v, sizeof keys[i].v) == 0; j++) balance += keys[j].even ? 1 : -1;
+        for (j = i; j < count && memcmp(keys[j].v, keys[i].v, sizeof keys[i].v) == 0; j++)
+            balance += keys[j].even ? 1 : -1;
         for (size_t k = i; k < j && balance != 0; k++)
             if (keys[k].even == (balance > 0)) {
                 keep[keys[k].triangle] = 1;
@@ -155,14 +156,17 @@ static swarf_status check_edges(const swarf_shells *s, const edge_use *uses)
         j = end_of_edge(uses, i, count);
         for (size_t k = i; k < j; k++) balance += uses[k].forward;
         if (balance == 0) continue;
-        if ((j - i) % 2) open++;
-        else turned++;
+        if ((j - i) % 2)
+            open++;
+        else
+            turned++;
         if (first == SIZE_MAX) first = i;
     }
     if (first == SIZE_MAX) return SWARF_OK;
     double middle[3];
     for (int c = 0; c < 3; c++)
-        middle[c] = 0.5 * ((double)s->xyz[3 * (size_t)uses[first].a + (size_t)c] + s->xyz[3 * (size_t)uses[first].b + (size_t)c]);
+        middle[c] = 0.5 * ((double)s->xyz[3 * (size_t)uses[first].a + (size_t)c] +
+                           s->xyz[3 * (size_t)uses[first].b + (size_t)c]);
     return swarf_fail(SWARF_ERROR_GEOMETRY,
                       "mesh: not closed: %zu open edges and %zu between triangles turned different ways, the first at "
                       "(%.6g, %.6g, %.6g) mm; a stock needs a closed surface",
@@ -180,8 +184,10 @@ static void join(uint32_t *parent, uint32_t i, uint32_t j)
 {
     i = find_root(parent, i);
     j = find_root(parent, j);
-    if (i < j) parent[j] = i;
-    else parent[i] = j;
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
 }
 
 static void join_shells(const edge_use *uses, size_t count, uint32_t *parent)
@@ -198,10 +204,13 @@ static void join_shells(const edge_use *uses, size_t count, uint32_t *parent)
         for (size_t k = i; k < j; k++) {
             int balance = 0;
             for (size_t m = i; m < j; m++)
-                if (find_root(parent, uses[m].triangle) == find_root(parent, uses[k].triangle)) balance += uses[m].forward;
+                if (find_root(parent, uses[m].triangle) == find_root(parent, uses[k].triangle))
+                    balance += uses[m].forward;
             if (balance == 0) continue;
-            if (unbalanced == UINT32_MAX) unbalanced = uses[k].triangle;
-            else join(parent, unbalanced, uses[k].triangle);
+            if (unbalanced == UINT32_MAX)
+                unbalanced = uses[k].triangle;
+            else
+                join(parent, unbalanced, uses[k].triangle);
         }
     }
 }
@@ -224,7 +233,8 @@ static double solid_angle(const swarf_shells *s, size_t triangle, const double p
         for (size_t c = 0; c < 3; c++) p[k][c] = s->xyz[3 * (size_t)s->index[3 * triangle + k] + c] - point[c];
         length[k] = sqrt(p[k][0] * p[k][0] + p[k][1] * p[k][1] + p[k][2] * p[k][2]);
     }
-    const double volume = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) + p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
+    const double volume = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
+                          p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
                           p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
     double below = length[0] * length[1] * length[2];
     for (int k = 0; k < 3; k++) {
@@ -248,7 +258,8 @@ static swarf_status check_cavity(const swarf_shells *s, const uint32_t *shell_of
         if (around) angle += solid_angle(s, i, point);
     }
     if (angle > 2 * 3.14159265358979323846) return SWARF_OK; /* halfway to the full turn of 4 pi */
-    return swarf_fail(SWARF_ERROR_GEOMETRY, "mesh: the shell at (%.6g, %.6g, %.6g) mm is inside out and in no solid; turn its triangles",
+    return swarf_fail(SWARF_ERROR_GEOMETRY,
+                      "mesh: the shell at (%.6g, %.6g, %.6g) mm is inside out and in no solid; turn its triangles",
                       point[0], point[1], point[2]);
 }
 
@@ -277,7 +288,8 @@ static swarf_status gather_shells(const swarf_shells *s, uint32_t *parent, shell
         const uint32_t root = find_root(parent, (uint32_t)i); /* never above i */
         if (root == i) {
             place[i] = (uint32_t)used;
-            shells[used++] = (shell){.sample = root, .lo = {INFINITY, INFINITY, INFINITY}, .hi = {-INFINITY, -INFINITY, -INFINITY}};
+            shells[used++] =
+                (shell){.sample = root, .lo = {INFINITY, INFINITY, INFINITY}, .hi = {-INFINITY, -INFINITY, -INFINITY}};
         }
         shell *own = &shells[place[root]];
         own->count++;

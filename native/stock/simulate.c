@@ -83,7 +83,8 @@ static swarf_status report_tool(struct player *player, size_t move, const swarf_
 {
     swarf_simulation *result = player->result;
     for (size_t i = 0; i < result->finding_count; i++)
-        if (result->findings[i].tool == section->tool && result->findings[i].operation == section->operation) return SWARF_OK;
+        if (result->findings[i].tool == section->tool && result->findings[i].operation == section->operation)
+            return SWARF_OK;
     SWARF_TRY(swarf_array_reserve((void **)&result->findings, &result->finding_room, result->finding_count + 1,
                                   sizeof *result->findings));
     swarf_finding *finding = &result->findings[result->finding_count++];
@@ -97,8 +98,8 @@ static swarf_status report_tool(struct player *player, size_t move, const swarf_
                                 ? swarf_program_operation_name(player->program, (size_t)section->operation)
                                 : "";
     if (section->tool < 0)
-        snprintf(finding->text, sizeof finding->text, "operation '%.80s' moves before any tool is loaded; nothing was cut",
-                 operation);
+        snprintf(finding->text, sizeof finding->text,
+                 "operation '%.80s' moves before any tool is loaded; nothing was cut", operation);
     else
         snprintf(finding->text, sizeof finding->text, "operation '%.80s': tool T%d %s; nothing was cut", operation,
                  (int)section->tool, what);
@@ -185,10 +186,17 @@ swarf_status swarf_stock_simulate(swarf_stock *stock, const swarf_program *progr
     SWARF_REQUIRE(program && out && (tools || tool_count == 0), "simulation: program, tools or output missing");
     SWARF_REQUIRE(!options || options->size == sizeof *options, "simulation: options of another version");
     const size_t total = swarf_program_move_count(program);
-    SWARF_REQUIRE(first <= total && count <= total - first, "simulation: moves %zu .. %zu of %zu", first, first + count, total);
+    SWARF_REQUIRE(first <= total && count <= total - first, "simulation: moves %zu .. %zu of %zu", first, first + count,
+                  total);
     const int per_move = options && options->removed_per_move;
-    struct player player = {.stock = stock, .program = program, .tools = tools, .tool_count = tool_count,
-                            .progress = progress, .first = first, .count = count, .batch = MOST_AT_ONCE};
+    struct player player = {.stock = stock,
+                            .program = program,
+                            .tools = tools,
+                            .tool_count = tool_count,
+                            .progress = progress,
+                            .first = first,
+                            .count = count,
+                            .batch = MOST_AT_ONCE};
     if (options && options->batch && options->batch < player.batch) player.batch = options->batch;
     if (per_move) player.batch = 1;
     SWARF_TRY(swarf_stock_enter_write(stock));

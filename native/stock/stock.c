@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Air kept around the material, in voxels. Half a leaf more than a whole one puts the faces of a block into the middle of
- * leaves, so that one layer of them holds the band, not two: half the leaves and time for faces. */
+/* Air kept around the material, in voxels. Half a leaf more than a whole one puts the faces of a block into the middle
+ * of leaves, so that one layer of them holds the band, not two: half the leaves and time for faces. */
 enum { PADDING = SWARF_LEAF_DIM + SWARF_LEAF_DIM / 2 };
 
 /* Bytes of a 128^3 node with its table, and of a leaf with buffer and allocator overhead (measured on OpenVDB 10). */
@@ -46,8 +46,8 @@ static swarf_status check_box(const swarf_box *box, double voxel)
     SWARF_REQUIRE(isfinite(voxel) && voxel > 0, "stock: voxel size %g mm is not a positive number", voxel);
     for (int k = 0; k < 3; k++) {
         SWARF_REQUIRE(isfinite(box->lo[k]) && isfinite(box->hi[k]), "stock: the box is not finite in %c", "xyz"[k]);
-        SWARF_REQUIRE(box->hi[k] > box->lo[k], "stock: the box is empty in %c (%g .. %g mm)", "xyz"[k], box->lo[k],
-                      box->hi[k]);
+        SWARF_REQUIRE(box->hi[k] > box->lo[k], "stock: the box is empty in %c (%g .. %g mm)", "xyz"[k], box -> lo[k],
+                      box -> hi[k]);
     }
     return SWARF_OK;
 }
@@ -78,9 +78,10 @@ swarf_status swarf_stock_layout(const swarf_box *box, const swarf_stock_options 
         const double edge = fmax(box->hi[0] - box->lo[0], fmax(box->hi[1] - box->lo[1], box->hi[2] - box->lo[2]));
         double fitting = fmax(voxel, 1e-7 * edge);
         while (estimate(box, fitting) > limit && fitting < edge) fitting *= 1.05;
-        return swarf_fail(SWARF_ERROR_MEMORY,
-                          "stock: a voxel of %g mm may need %.3g GiB, %.3g GiB may be used; a voxel of %.2g mm or more fits",
-                          voxel, wanted / 0x1p30, limit / 0x1p30, fitting * 1.05);
+        return swarf_fail(
+            SWARF_ERROR_MEMORY,
+            "stock: a voxel of %g mm may need %.3g GiB, %.3g GiB may be used; a voxel of %.2g mm or more fits", voxel,
+            wanted / 0x1p30, limit / 0x1p30, fitting * 1.05);
     }
     for (int k = 0; k < 3; k++) {
         /* a face within a billionth of a voxel of a whole number is that number */
@@ -236,8 +237,7 @@ static swarf_status fill_bar_node(void *context, size_t node)
         uint64_t mask[8];
         float least;
         swarf_leaf_mask(values, layout->background, mask, &least);
-        if (least < SWARF_LEAF_DROP * (float)voxel)
-            SWARF_TRY(swarf_tree_leaf_add(bar->tree, node, slot, values, mask));
+        if (least < SWARF_LEAF_DROP * (float)voxel) SWARF_TRY(swarf_tree_leaf_add(bar->tree, node, slot, values, mask));
     }
     return SWARF_OK;
 }
@@ -263,8 +263,7 @@ swarf_status swarf_stock_create_cylinder(const double base[3], const double axis
     SWARF_TRY(create_empty(&box, options, &stock));
     bar.tree = stock->tree;
     bar.layout = swarf_tree_get_layout(stock->tree);
-    const swarf_status status =
-        swarf_parallel_for(swarf_layout_nodes(bar.layout), fill_bar_node, &bar, NULL, 0, 1);
+    const swarf_status status = swarf_parallel_for(swarf_layout_nodes(bar.layout), fill_bar_node, &bar, NULL, 0, 1);
     if (status != SWARF_OK) {
         swarf_stock_destroy(stock);
         return status;

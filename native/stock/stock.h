@@ -16,9 +16,9 @@ extern "C" {
 
 struct swarf_stock {
     swarf_tree *tree;
-    int busy; /* 1 while a call is in; only by atomic exchange */
-    int untouched;         /* 1 while the block's faces may lack leaves */
-    double box_centre[3];  /* of the block, in the layout's voxels */
+    int busy;             /* 1 while a call is in; only by atomic exchange */
+    int untouched;        /* 1 while the block's faces may lack leaves */
+    double box_centre[3]; /* of the block, in the layout's voxels */
     double box_half[3];
 };
 

@@ -25,8 +25,8 @@ swarf_status find_shift(const swarf_tree &own, const swarf_tree &other, openvdb:
     for (int k = 0; k < 3; k++) {
         const double shift = (other.layout.origin[k] - own.layout.origin[k]) / voxel;
         SWARF_REQUIRE(std::fabs(shift - std::round(shift)) <= coincide && std::fabs(shift) < 1e8,
-                      "stock: the voxels of the two stocks lie %.4g voxels apart along %c; whole numbers combine", shift,
-                      "xyz"[k]);
+                      "stock: the voxels of the two stocks lie %.4g voxels apart along %c; whole numbers combine",
+                      shift, "xyz"[k]);
         out[k] = static_cast<int>(std::lround(shift)) + own.base[k] - other.base[k];
     }
     return SWARF_OK;

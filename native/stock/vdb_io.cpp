@@ -27,15 +27,18 @@ namespace {
 
 /* A stdio file as a stream buffer (stdio buffers already). `expected` bytes are the whole of the progress. */
 class file_buffer : public std::streambuf {
-public:
+  public:
     file_buffer(FILE *file, double expected, swarf_interrupter &interrupter)
         : file_(file), expected_(expected), interrupter_(interrupter)
     {
     }
     /* Whether the caller may stop the work now; at first he may. */
-    void let_stop(bool may) { may_stop_ = may; }
+    void let_stop(bool may)
+    {
+        may_stop_ = may;
+    }
 
-protected:
+  protected:
     std::streamsize xsgetn(char *to, std::streamsize count) override
     {
         return moved(std::fread(to, 1, static_cast<size_t>(count), file_));
@@ -44,10 +47,22 @@ protected:
     {
         return moved(std::fwrite(from, 1, static_cast<size_t>(count), file_));
     }
-    int_type uflow() override { return std::fgetc(file_); }
-    int_type underflow() override { return std::ungetc(std::fgetc(file_), file_); }
-    int_type overflow(int_type c) override { return std::fputc(c, file_); }
-    int sync() override { return 0; }
+    int_type uflow() override
+    {
+        return std::fgetc(file_);
+    }
+    int_type underflow() override
+    {
+        return std::ungetc(std::fgetc(file_), file_);
+    }
+    int_type overflow(int_type c) override
+    {
+        return std::fputc(c, file_);
+    }
+    int sync() override
+    {
+        return 0;
+    }
     pos_type seekoff(off_type offset, std::ios_base::seekdir way, std::ios_base::openmode) override
     {
         const int whence = way == std::ios_base::beg ? SEEK_SET : way == std::ios_base::cur ? SEEK_CUR : SEEK_END;
@@ -59,7 +74,7 @@ protected:
         return seekoff(position, std::ios_base::beg, mode);
     }
 
-private:
+  private:
     std::streamsize moved(size_t count)
     {
         done_ += static_cast<double>(count);
@@ -81,12 +96,18 @@ private:
 
 /* Archive::write() to a stream of ours, with the offsets that other programs seek by. */
 class stream_archive : public openvdb::io::Archive {
-public:
-    void save(std::ostream &stream, const openvdb::GridCPtrVec &grids) const { Archive::write(stream, grids, true); }
+  public:
+    void save(std::ostream &stream, const openvdb::GridCPtrVec &grids) const
+    {
+        Archive::write(stream, grids, true);
+    }
 };
 
 struct file_closer {
-    void operator()(FILE *file) const { std::fclose(file); }
+    void operator()(FILE *file) const
+    {
+        std::fclose(file);
+    }
 };
 
 /* What Archive::readGrid() does after the metadata: they and all before them are only ever read by the scan. */
@@ -118,10 +139,12 @@ swarf_status check_transform(const openvdb::FloatGrid &grid, const char *path, d
     bool fine = std::isfinite(voxel) && voxel > 0;
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 3 && fine; k++)
-            fine = i == 3 ? std::isfinite(matrix(i, k)) : std::fabs(matrix(i, k) - (i == k ? voxel : 0)) <= 1e-9 * voxel;
+            fine =
+                i == 3 ? std::isfinite(matrix(i, k)) : std::fabs(matrix(i, k) - (i == k ? voxel : 0)) <= 1e-9 * voxel;
     if (!fine)
         return swarf_fail(SWARF_ERROR_FORMAT,
-                          "%s: its voxels are not cubes along the axes (rotated, mirrored or stretched); resample it", path);
+                          "%s: its voxels are not cubes along the axes (rotated, mirrored or stretched); resample it",
+                          path);
     return SWARF_OK;
 }
 
@@ -164,8 +187,9 @@ swarf_status check_extent(const openvdb::FloatGrid &grid, const char *path, doub
     double origin[3];
     int32_t count[3];
     const swarf_status status = swarf_stock_layout(&extent, &options, origin, count);
-    return status == SWARF_OK ? SWARF_OK
-                              : swarf_fail_within(status == SWARF_ERROR_ARGUMENT ? SWARF_ERROR_FORMAT : status, "%s", path);
+    return status == SWARF_OK
+               ? SWARF_OK
+               : swarf_fail_within(status == SWARF_ERROR_ARGUMENT ? SWARF_ERROR_FORMAT : status, "%s", path);
 }
 
 /* Bring any level set to the form a stock has. Wider bands are cut to three voxels, which changes no value inside
@@ -177,7 +201,8 @@ swarf_status normalise(openvdb::FloatGrid::Ptr &grid, const char *path, double v
         return swarf_fail(SWARF_ERROR_FORMAT, "%s: a band of %g voxels; at least 1 is needed", path, width);
     if (grid->tree().activeTileCount() > 0)
         return swarf_fail(SWARF_ERROR_FORMAT, "%s: not a narrow band: whole blocks are active", path);
-    if (!all_finite(grid->tree())) return swarf_fail(SWARF_ERROR_FORMAT, "%s: it holds values that are not finite", path);
+    if (!all_finite(grid->tree()))
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s: it holds values that are not finite", path);
     const auto band = static_cast<float>(SWARF_HALF_WIDTH * voxel);
     trim_band(*grid, std::min(grid->background(), width > SWARF_HALF_WIDTH ? band : grid->background()));
     SWARF_TRY(check_extent(*grid, path, voxel));

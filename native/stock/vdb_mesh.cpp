@@ -22,9 +22,18 @@ struct run_adapter {
     openvdb::Vec3d origin;
     double voxel;
 
-    size_t polygonCount() const { return run.count; }
-    size_t pointCount() const { return shells.vertex_count; }
-    size_t vertexCount(size_t) const { return 3; }
+    size_t polygonCount() const
+    {
+        return run.count;
+    }
+    size_t pointCount() const
+    {
+        return shells.vertex_count;
+    }
+    size_t vertexCount(size_t) const
+    {
+        return 3;
+    }
     void getIndexSpacePoint(size_t polygon, size_t corner, openvdb::Vec3d &out) const
     {
         const float *xyz = shells.xyz + 3 * static_cast<size_t>(shells.index[3 * (run.first + polygon) + corner]);
@@ -41,7 +50,8 @@ openvdb::FloatGrid::Ptr voxelize(const swarf_shells &shells, double voxel, const
     for (size_t i = 0; i < shells.run_count && !interrupter.wasInterrupted(); i++) {
         const swarf_shell_run &run = shells.runs[i];
         const run_adapter mesh{shells, run, origin, voxel};
-        interrupter.part(from + (to - from) * static_cast<double>(run.first) / static_cast<double>(shells.triangle_count),
+        interrupter.part(from +
+                             (to - from) * static_cast<double>(run.first) / static_cast<double>(shells.triangle_count),
                          from + (to - from) * static_cast<double>(run.first + run.count) /
                                     static_cast<double>(shells.triangle_count));
         const auto part = openvdb::tools::meshToVolume<openvdb::FloatGrid>(interrupter, mesh, *transform,
@@ -67,8 +77,7 @@ extern "C" swarf_status swarf_tree_create_shells(const swarf_shells *shells, dou
         swarf_vdb_initialize();
         swarf_interrupter interrupter(progress);
         const openvdb::Vec3d corner(origin[0], origin[1], origin[2]);
-        const auto grid =
-            swarf_arena_run([&] { return voxelize(*shells, voxel, corner, interrupter, from, to); });
+        const auto grid = swarf_arena_run([&] { return voxelize(*shells, voxel, corner, interrupter, from, to); });
         SWARF_TRY(interrupter.status());
         *out = swarf_tree_adopt(grid);
         return SWARF_OK;
@@ -85,7 +94,8 @@ extern "C" swarf_status swarf_stock_create_mesh(const swarf_triangles *triangles
     int32_t count[3];
     swarf_tree *tree = nullptr;
     swarf_status status = swarf_stock_layout(&shells.box, options, origin, count);
-    if (status == SWARF_OK) status = swarf_tree_create_shells(&shells, options->voxel_mm, origin, progress, 0, 1, &tree);
+    if (status == SWARF_OK)
+        status = swarf_tree_create_shells(&shells, options->voxel_mm, origin, progress, 0, 1, &tree);
     swarf_shells_free(&shells);
     return status == SWARF_OK ? swarf_stock_wrap(tree, out) : status;
 }

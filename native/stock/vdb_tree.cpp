@@ -30,7 +30,8 @@ size_t node_number(const swarf_tree &tree, int32_t x, int32_t y, int32_t z)
 Coord slot_corner(const swarf_vdb_node &node, unsigned slot)
 {
     const Coord corner = node.origin();
-    return corner.offsetBy(static_cast<int>(slot >> 8) * SWARF_LEAF_DIM, static_cast<int>(slot >> 4 & 15) * SWARF_LEAF_DIM,
+    return corner.offsetBy(static_cast<int>(slot >> 8) * SWARF_LEAF_DIM,
+                           static_cast<int>(slot >> 4 & 15) * SWARF_LEAF_DIM,
                            static_cast<int>(slot & 15) * SWARF_LEAF_DIM);
 }
 
@@ -56,8 +57,8 @@ void fill_nodes(swarf_tree &tree)
     for (int32_t x = 0; x < count[0]; x++)
         for (int32_t y = 0; y < count[1]; y++)
             for (int32_t z = 0; z < count[2]; z++)
-                tree.nodes[node_number(tree, x, y, z)] =
-                    make_node(tree.grid->tree(), tree.base.offsetBy(x * SWARF_NODE_DIM, y * SWARF_NODE_DIM, z * SWARF_NODE_DIM));
+                tree.nodes[node_number(tree, x, y, z)] = make_node(
+                    tree.grid->tree(), tree.base.offsetBy(x * SWARF_NODE_DIM, y * SWARF_NODE_DIM, z * SWARF_NODE_DIM));
 }
 
 swarf_vdb_leaf *leaf_of(const swarf_tree *tree, size_t node, unsigned slot)

@@ -32,9 +32,9 @@ typedef struct swarf_tree swarf_tree;
 /** What the cutting loop works on; owned by the tree. */
 typedef struct swarf_tree_layout {
     double voxel;
-    double origin[3];    /**< world position (mm) of the centre of voxel (0, 0, 0) of this layout */
-    int32_t count[3];    /**< nodes along x, y, z */
-    float background;    /**< SWARF_HALF_WIDTH * voxel */
+    double origin[3]; /**< world position (mm) of the centre of voxel (0, 0, 0) of this layout */
+    int32_t count[3]; /**< nodes along x, y, z */
+    float background; /**< SWARF_HALF_WIDTH * voxel */
     uint64_t *occupied;
 } swarf_tree_layout;
 

@@ -111,8 +111,10 @@ static double chain_radius(const outline *o, const chain *c, double z)
         const int above = f->radius > 0 && s > sin(f->last);
         const double angle = above ? f->last : f->first, r = above ? f->r1 : f->r0, height = above ? f->z1 : f->z0;
         const double nr = cos(angle), rest = -sin(angle) * (z - height);
-        if (nr >= same_angle) least = fmin(least, r + rest / nr);
-        else if (rest < -tiny) return -1;
+        if (nr >= same_angle)
+            least = fmin(least, r + rest / nr);
+        else if (rest < -tiny)
+            return -1;
     }
     return least;
 }
@@ -134,8 +136,10 @@ static double reach(const outline *o, const chain *c, double start, double end)
         }
         for (int k = 0; k < 60; k++) {
             const double middle = 0.5 * (inside + z);
-            if (chain_radius(o, c, middle) <= swarf_cutter_radius_at(o->cutter, o->kind, middle) + slack) inside = middle;
-            else z = middle;
+            if (chain_radius(o, c, middle) <= swarf_cutter_radius_at(o->cutter, o->kind, middle) + slack)
+                inside = middle;
+            else
+                z = middle;
         }
         return inside;
     }
@@ -159,9 +163,12 @@ static swarf_status collect_faces(outline *o, const swarf_cutter_part *part)
 {
     for (size_t i = 0; i + 1 < part->node_count; i++) {
         const swarf_profile_piece p = swarf_profile_piece_get(&part->nodes[i], &part->nodes[i + 1]);
-        if (p.radius == 0) SWARF_TRY(add_line(o, p.r0, p.z0, p.r1, p.z1));
-        else if (p.convex) SWARF_TRY(add_convex_arc(o, &p));
-        else SWARF_TRY(add_hollow_arc(o, &p));
+        if (p.radius == 0)
+            SWARF_TRY(add_line(o, p.r0, p.z0, p.r1, p.z1));
+        else if (p.convex)
+            SWARF_TRY(add_convex_arc(o, &p));
+        else
+            SWARF_TRY(add_hollow_arc(o, &p));
     }
     return SWARF_OK;
 }
@@ -209,7 +216,8 @@ static swarf_piece to_piece(const face *f, double voxel)
     return p;
 }
 
-/* Greatest radius of a chain's component: at a node or where it is clipped, as arcs are split where they are vertical. */
+/* Greatest radius of a chain's component: at a node or where it is clipped, as arcs are split where they are vertical.
+ */
 static double widest(const outline *o, const chain *c)
 {
     const double lo = fmax(o->z_lo, c->lo), hi = fmin(o->z_hi, c->hi);
@@ -267,7 +275,8 @@ static void find_core(const outline *o, double voxel, swarf_body *body)
         const double z = o->z_lo + (o->z_hi - o->z_lo) * i / LEVELS;
         radius[i] = 0;
         for (size_t k = 0; k < o->chain_count; k++)
-            if (z >= o->chains[k].lo && z <= o->chains[k].hi) radius[i] = fmax(radius[i], chain_radius(o, &o->chains[k], z));
+            if (z >= o->chains[k].lo && z <= o->chains[k].hi)
+                radius[i] = fmax(radius[i], chain_radius(o, &o->chains[k], z));
     }
     for (int i = 0; i < LEVELS; i++) {
         double least = radius[i];

@@ -34,7 +34,7 @@ typedef enum swarf_body_kind { SWARF_BODY_CYLINDER, SWARF_BODY_BALL, SWARF_BODY_
 
 typedef struct swarf_body {
     swarf_body_kind kind;
-    float radius, z_lo, z_hi;        /* enclosing cylinder */
+    float radius, z_lo, z_hi;            /* enclosing cylinder */
     float core_radius, core_lo, core_hi; /* a large cylinder inside */
     size_t piece_count, component_count;
     swarf_piece *pieces;

@@ -98,8 +98,10 @@ static void fill_arc(swarf_column *column, size_t k, const swarf_track *track)
     f[COLUMN_BX][k] = (float)(c[0] + R * b[0] - column->middle[0]);
     f[COLUMN_BY][k] = (float)(c[1] + R * b[1] - column->middle[1]);
     column->kind[k] = TRACK_ARC;
-    if (track->turn >= 2 * M_PI - 1e-12) column->kind[k] |= TRACK_ARC_FULL;
-    else if (track->turn > M_PI) column->kind[k] |= TRACK_ARC_MAJOR;
+    if (track->turn >= 2 * M_PI - 1e-12)
+        column->kind[k] |= TRACK_ARC_FULL;
+    else if (track->turn > M_PI)
+        column->kind[k] |= TRACK_ARC_MAJOR;
     column->arcs = 1;
 }
 
@@ -112,8 +114,10 @@ swarf_status swarf_column_fill(swarf_column *column, const double middle[3], con
     column->arcs = 0;
     for (size_t k = 0; k < count; k++) {
         const swarf_track *track = &tracks[numbers ? (size_t)numbers[k] : k];
-        if (track->is_arc) fill_arc(column, k, track);
-        else fill_line(column, k, track);
+        if (track->is_arc)
+            fill_arc(column, k, track);
+        else
+            fill_line(column, k, track);
         column->list[0][k] = (int32_t)k;
     }
     for (int i = 0; i < COLUMN_SLACK; i++) column->list[0][count + (size_t)i] = 0;

@@ -11,14 +11,25 @@
 /** Arrays of a column. A line is base + t * u (t from S0 to S1, horizontal length), rising by M per unit; D, T0 and T1
  *  the same by length in space. Level arcs use the names in brackets. */
 enum swarf_column_field {
-    COLUMN_X, COLUMN_Y, /* base [nearest point on the circle] */
-    COLUMN_Z,           /* height of the cutter's tip there; of a vertical line its low end */
-    COLUMN_UX, COLUMN_UY, /* horizontal direction [outward normal of the circle at the base] */
-    COLUMN_S0, COLUMN_S1, /* [S0: 1 / radius] */
-    COLUMN_M, COLUMN_IM,  /* slope, 1 / sqrt(1 + slope^2) [0, 1] */
-    COLUMN_RISE,          /* vertical line: its length; others 0 */
-    COLUMN_DX, COLUMN_DY, COLUMN_DZ, COLUMN_T0, COLUMN_T1,
-    COLUMN_AX, COLUMN_AY, COLUMN_BX, COLUMN_BY, /* [ends of the arc] */
+    COLUMN_X,
+    COLUMN_Y, /* base [nearest point on the circle] */
+    COLUMN_Z, /* height of the cutter's tip there; of a vertical line its low end */
+    COLUMN_UX,
+    COLUMN_UY, /* horizontal direction [outward normal of the circle at the base] */
+    COLUMN_S0,
+    COLUMN_S1, /* [S0: 1 / radius] */
+    COLUMN_M,
+    COLUMN_IM,   /* slope, 1 / sqrt(1 + slope^2) [0, 1] */
+    COLUMN_RISE, /* vertical line: its length; others 0 */
+    COLUMN_DX,
+    COLUMN_DY,
+    COLUMN_DZ,
+    COLUMN_T0,
+    COLUMN_T1,
+    COLUMN_AX,
+    COLUMN_AY,
+    COLUMN_BX,
+    COLUMN_BY, /* [ends of the arc] */
     COLUMN_FIELDS,
     /* arcs: a point is within the arc's angle where A + NA x (p - base) >= 0 and / or B - NB x (p - base) >= 0 */
     COLUMN_A = COLUMN_T0,

@@ -15,7 +15,8 @@ static swarf_status measure(const swarf_body *body, const swarf_track_list *list
     for (size_t i = 0; i < count; i++) {
         double middle[3];
         for (int k = 0; k < 3; k++) {
-            SWARF_REQUIRE(isfinite(points[3 * i + (size_t)k]), "sweep: coordinate %c of point %zu is not finite", "xyz"[k], i);
+            SWARF_REQUIRE(isfinite(points[3 * i + (size_t)k]), "sweep: coordinate %c of point %zu is not finite",
+                          "xyz"[k], i);
             middle[k] = points[3 * i + (size_t)k] / voxel;
         }
         SWARF_TRY(swarf_column_fill(column, middle, list->tracks, NULL, list->count));

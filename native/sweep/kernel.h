@@ -20,13 +20,13 @@ typedef struct swarf_slabs {
 
 /** A leaf being cut. */
 typedef struct swarf_leaf_cut {
-    float x, y, z;      /* low corner, relative to the column's middle */
-    float voxel;        /* mm */
-    float background;   /* mm */
-    int solid;          /* 1: all values are -background and `values` is not read */
-    float *values;      /* 512 values in mm, x * 64 + y * 8 + z; changed in place */
-    uint64_t mask[8];   /* out: values within the band */
-    float least, most;  /* out: least and greatest value */
+    float x, y, z;     /* low corner, relative to the column's middle */
+    float voxel;       /* mm */
+    float background;  /* mm */
+    int solid;         /* 1: all values are -background and `values` is not read */
+    float *values;     /* 512 values in mm, x * 64 + y * 8 + z; changed in place */
+    uint64_t mask[8];  /* out: values within the band */
+    float least, most; /* out: least and greatest value */
 } swarf_leaf_cut;
 
 typedef struct swarf_kernel {
@@ -38,8 +38,8 @@ typedef struct swarf_kernel {
                swarf_leaf_cut *leaf);
     /** Signed distance in voxels from the column's middle to the tracks of a list, as in a leaf. */
     float (*distance)(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count);
-    /** Signed distances (mm, clamped to the background) to a block at the 512 voxels of a leaf, the mask of those in the
-     *  band, and the least. */
+    /** Signed distances (mm, clamped to the background) to a block at the 512 voxels of a leaf, the mask of those in
+     * the band, and the least. */
     void (*block)(const swarf_slabs *slabs, float voxel, float background, float values[512], uint64_t mask[8],
                   float *least);
     /** Material in a leaf, in voxels: the sum of clamp(1/2 - value * scale, 0, 1), scale being 1 / voxel. */

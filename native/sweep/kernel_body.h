@@ -6,7 +6,6 @@
 #include "sweep/kernel.h"
 #include "sweep/lanes.h"
 
-
 /* Farther than any voxel that counts, and safe to square. */
 static const float far_away = 1e18f;
 
@@ -235,8 +234,8 @@ INLINE void level_piece(const swarf_piece *p, lanes rho, float base, lanes value
 
 /* Any body where the height of the tip does not depend on the place: level lines, level arcs, plunges. The least plan
  * distance is the nearest moment; of a plunge the lower border counts at its low end, the upper at its high end. */
-static __attribute__((noinline)) void general_level(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
-                          lanes best[8])
+static __attribute__((noinline)) void general_level(const swarf_body *body, const swarf_column *c, int32_t i, lanes x,
+                                                    lanes y, float z0, lanes best[8])
 {
     float *const *f = c->field;
     const lanes rho = plan_distance(c, i, x, y);
@@ -262,7 +261,8 @@ struct tilt {
     float run, rise; /* per unit of t */
 };
 
-INLINE struct moment at_moment(const swarf_body *body, const swarf_component *component, const struct tilt *tilt, lanes t)
+INLINE struct moment at_moment(const swarf_body *body, const swarf_component *component, const struct tilt *tilt,
+                               lanes t)
 {
     const lanes u = tilt->s - t * tilt->run, height = tilt->height - t * tilt->rise;
     const lanes rho = root(u * u + tilt->w2);
@@ -316,15 +316,16 @@ static const float settled = 2e-5f;
 enum { SEARCH_STEPS = 28 };
 
 /* Any body on a tilted line: phi is convex in t, its minimum is bracketed by the sign of its slope and closed in on by
- * bisection and by the crossing of the tangents (exact at once where two pieces meet). The gradient of the minimum is the
- * mix of both ends' that stands across the track; dividing by its length makes edges sweep with unit gradient. */
-static __attribute__((noinline)) void general_tilted(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
-                           int voxels, lanes best[8])
+ * bisection and by the crossing of the tangents (exact at once where two pieces meet). The gradient of the minimum is
+ * the mix of both ends' that stands across the track; dividing by its length makes edges sweep with unit gradient. */
+static __attribute__((noinline)) void general_tilted(const swarf_body *body, const swarf_column *c, int32_t i, lanes x,
+                                                     lanes y, float z0, int voxels, lanes best[8])
 {
     float *const *f = c->field;
     const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
     const float ux = f[COLUMN_UX][i], uy = f[COLUMN_UY][i];
-    struct tilt tilt = {.s = ex * ux + ey * uy, .w = ey * ux - ex * uy, .run = f[COLUMN_IM][i], .rise = f[COLUMN_DZ][i]};
+    struct tilt tilt = {
+        .s = ex * ux + ey * uy, .w = ey * ux - ex * uy, .run = f[COLUMN_IM][i], .rise = f[COLUMN_DZ][i]};
     tilt.w2 = tilt.w * tilt.w;
     /* only while the cutter is near: beside it and between its lowest and highest point, with the band and a margin */
     const float margin = SWARF_HALF_WIDTH + 1, reach = body->radius + margin;
@@ -370,10 +371,10 @@ static __attribute__((noinline)) void general_tilted(const swarf_body *body, con
 }
 
 /* Cylinders on lines. Tilted: side, lowest bottom, and the slanted surface that the trailing edge of the bottom leaves,
- * scaled to unit gradient; likewise at the top. Never switched between, so that the band has no tears. `seam`: the bottom
- * lies inside of something else and only has to be on the right side. */
-INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0, int seam,
-                          lanes best[8])
+ * scaled to unit gradient; likewise at the top. Never switched between, so that the band has no tears. `seam`: the
+ * bottom lies inside of something else and only has to be on the right side. */
+INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
+                          int seam, lanes best[8])
 {
     float *const *f = c->field;
     const float radius = body->radius, m = f[COLUMN_M][i];
@@ -397,7 +398,8 @@ INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t
     const lanes under = ((s - chord) * m + bottom) * bottom_scale;
     for (int z = 0; z < 8; z++) {
         const lanes value = maximum(maximum(side, all(low - (float)z)), under - bottom_scale * (float)z);
-        if (!top_near) best[z] = minimum(best[z], value);
+        if (!top_near)
+            best[z] = minimum(best[z], value);
         else {
             const lanes over = ((s + chord) * m + (bottom + length)) * scale;
             best[z] = minimum(best[z], maximum(value, maximum(all((float)z - high), scale * (float)z - over)));
@@ -446,8 +448,10 @@ INLINE void distance_group(const swarf_body *body, const swarf_column *c, const 
         const int32_t i = list[k];
         const int kind = c->kind[i];
         if (body->kind == SWARF_BODY_GENERAL || kind & TRACK_ARC) {
-            if (kind & TRACK_TILTED) general_tilted(body, c, i, x, y, z0, voxels, best);
-            else general_level(body, c, i, x, y, z0, best);
+            if (kind & TRACK_TILTED)
+                general_tilted(body, c, i, x, y, z0, voxels, best);
+            else
+                general_level(body, c, i, x, y, z0, best);
         } else if (ball) {
             ball_line(body, c, i, x, y, z0, best, capsule);
         } else {

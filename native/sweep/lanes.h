@@ -57,14 +57,38 @@ INLINE void store8(float *to, octet a)
 #if defined(__AVX512F__)
 
 typedef __mmask16 mask;
-INLINE lanes minimum(lanes a, lanes b) { return (lanes)_mm512_min_ps((__m512)a, (__m512)b); }
-INLINE lanes maximum(lanes a, lanes b) { return (lanes)_mm512_max_ps((__m512)a, (__m512)b); }
-INLINE lanes root(lanes a) { return (lanes)_mm512_sqrt_ps((__m512)a); }
-INLINE mask less(lanes a, lanes b) { return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ); }
-INLINE mask both(mask a, mask b) { return a & b; }
-INLINE mask either(mask a, mask b) { return a | b; }
-INLINE lanes pick(mask m, lanes a, lanes b) { return (lanes)_mm512_mask_blend_ps(m, (__m512)b, (__m512)a); }
-INLINE unsigned bits(mask m) { return m; }
+INLINE lanes minimum(lanes a, lanes b)
+{
+    return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
+}
+INLINE lanes maximum(lanes a, lanes b)
+{
+    return (lanes)_mm512_max_ps((__m512)a, (__m512)b);
+}
+INLINE lanes root(lanes a)
+{
+    return (lanes)_mm512_sqrt_ps((__m512)a);
+}
+INLINE mask less(lanes a, lanes b)
+{
+    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
+}
+INLINE mask both(mask a, mask b)
+{
+    return a & b;
+}
+INLINE mask either(mask a, mask b)
+{
+    return a | b;
+}
+INLINE lanes pick(mask m, lanes a, lanes b)
+{
+    return (lanes)_mm512_mask_blend_ps(m, (__m512)b, (__m512)a);
+}
+INLINE unsigned bits(mask m)
+{
+    return m;
+}
 INLINE lanes gather(const float *from, const int32_t *at)
 {
     return (lanes)_mm512_i32gather_ps(_mm512_loadu_si512(at), from, 4);
@@ -75,21 +99,42 @@ INLINE lanes gather(const float *from, const int32_t *at)
 typedef struct mask {
     __m256 lo, hi;
 } mask;
-INLINE __m256 low(lanes a) { return (__m256)__builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7); }
-INLINE __m256 high(lanes a) { return (__m256)__builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15); }
+INLINE __m256 low(lanes a)
+{
+    return (__m256)__builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+INLINE __m256 high(lanes a)
+{
+    return (__m256)__builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15);
+}
 INLINE lanes join(__m256 a, __m256 b)
 {
     return __builtin_shufflevector((octet)a, (octet)b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
-INLINE lanes minimum(lanes a, lanes b) { return join(_mm256_min_ps(low(a), low(b)), _mm256_min_ps(high(a), high(b))); }
-INLINE lanes maximum(lanes a, lanes b) { return join(_mm256_max_ps(low(a), low(b)), _mm256_max_ps(high(a), high(b))); }
-INLINE lanes root(lanes a) { return join(_mm256_sqrt_ps(low(a)), _mm256_sqrt_ps(high(a))); }
+INLINE lanes minimum(lanes a, lanes b)
+{
+    return join(_mm256_min_ps(low(a), low(b)), _mm256_min_ps(high(a), high(b)));
+}
+INLINE lanes maximum(lanes a, lanes b)
+{
+    return join(_mm256_max_ps(low(a), low(b)), _mm256_max_ps(high(a), high(b)));
+}
+INLINE lanes root(lanes a)
+{
+    return join(_mm256_sqrt_ps(low(a)), _mm256_sqrt_ps(high(a)));
+}
 INLINE mask less(lanes a, lanes b)
 {
     return (mask){_mm256_cmp_ps(low(a), low(b), _CMP_LT_OQ), _mm256_cmp_ps(high(a), high(b), _CMP_LT_OQ)};
 }
-INLINE mask both(mask a, mask b) { return (mask){_mm256_and_ps(a.lo, b.lo), _mm256_and_ps(a.hi, b.hi)}; }
-INLINE mask either(mask a, mask b) { return (mask){_mm256_or_ps(a.lo, b.lo), _mm256_or_ps(a.hi, b.hi)}; }
+INLINE mask both(mask a, mask b)
+{
+    return (mask){_mm256_and_ps(a.lo, b.lo), _mm256_and_ps(a.hi, b.hi)};
+}
+INLINE mask either(mask a, mask b)
+{
+    return (mask){_mm256_or_ps(a.lo, b.lo), _mm256_or_ps(a.hi, b.hi)};
+}
 INLINE lanes pick(mask m, lanes a, lanes b)
 {
     return join(_mm256_blendv_ps(low(b), low(a), m.lo), _mm256_blendv_ps(high(b), high(a), m.hi));
@@ -162,9 +207,18 @@ INLINE lanes gather(const float *from, const int32_t *at)
 #endif
 
 #if defined(__AVX2__)
-INLINE octet minimum8(octet a, octet b) { return (octet)_mm256_min_ps((__m256)a, (__m256)b); }
-INLINE octet maximum8(octet a, octet b) { return (octet)_mm256_max_ps((__m256)a, (__m256)b); }
-INLINE octet root8(octet a) { return (octet)_mm256_sqrt_ps((__m256)a); }
+INLINE octet minimum8(octet a, octet b)
+{
+    return (octet)_mm256_min_ps((__m256)a, (__m256)b);
+}
+INLINE octet maximum8(octet a, octet b)
+{
+    return (octet)_mm256_max_ps((__m256)a, (__m256)b);
+}
+INLINE octet root8(octet a)
+{
+    return (octet)_mm256_sqrt_ps((__m256)a);
+}
 /* One bit per value with |a| < limit. */
 INLINE unsigned within8(octet a, octet limit)
 {

@@ -42,21 +42,23 @@ static void to_index(const double xyz[3], const double origin[3], double voxel, 
 static swarf_status append_chords(swarf_track_list *list, const swarf_path *path, const double origin[3], double voxel,
                                   double radius, const int axis[2], const double centre[3])
 {
-    /* A chord of angle s lies inside its arc by at most radius * (1 - cos(s / 2)), two thirds of that on average: with its
-     * ends that much outside the arc it removes as much as the arc does, and leaves it by two thirds at most. */
+    /* A chord of angle s lies inside its arc by at most radius * (1 - cos(s / 2)), two thirds of that on average: with
+     * its ends that much outside the arc it removes as much as the arc does, and leaves it by two thirds at most. */
     const double inside = fmin(1, SWARF_SWEEP_BOUND / fmax(radius, 1e-9));
     const double step = fmin(0.5 * M_PI, 2 * acos(1 - inside));
     const double outwards = 1 + 2.0 / 3.0 * (1 - cos(0.5 * step));
     const double steps = ceil(fabs(path->arc.angle_rad) / step);
-    if (!(steps < 1e8)) return swarf_fail(SWARF_ERROR_ARGUMENT, "arc: %g turns of radius %g voxels are too many",
-                                          path->arc.angle_rad / (2 * M_PI), radius);
+    if (!(steps < 1e8))
+        return swarf_fail(SWARF_ERROR_ARGUMENT, "arc: %g turns of radius %g voxels are too many",
+                          path->arc.angle_rad / (2 * M_PI), radius);
     const size_t count = steps < 1 ? 1 : (size_t)steps;
     double xyz[3], a[3], b[3];
     to_index(path->start, origin, voxel, a);
     for (size_t i = 1; i <= count; i++) {
         swarf_path_point(path, (double)i / (double)count, xyz);
         to_index(xyz, origin, voxel, b);
-        for (int k = 0; k < 2 && i < count; k++) b[axis[k]] = centre[axis[k]] + outwards * (b[axis[k]] - centre[axis[k]]);
+        for (int k = 0; k < 2 && i < count; k++)
+            b[axis[k]] = centre[axis[k]] + outwards * (b[axis[k]] - centre[axis[k]]);
         SWARF_TRY(append_line(list, a, b));
         for (int k = 0; k < 3; k++) a[k] = b[k];
     }

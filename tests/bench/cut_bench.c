@@ -90,13 +90,14 @@ static void run(const job *j, int resolution, size_t batch)
     uint64_t hash = 0;
     must(swarf_stock_volume(stock, &volume));
     must(swarf_stock_hash(stock, &hash));
-    printf("{\"program\": \"%s\", \"resolution\": %d, \"threads\": %d, \"batch\": %zu, \"moves\": %zu, \"isa\": \"%s\", "
-           "\"version\": \"%s\", \"read_s\": %.6f, \"create_s\": %.6f, \"cut_s\": %.6f, \"finish_s\": %.6f, "
-           "\"total_s\": %.6f, \"leaves\": %zu, \"tree_mb\": %.1f, \"peak_mb\": %.1f, \"volume_mm3\": %.4f, "
-           "\"hash\": \"%016" PRIx64 "\"}\n",
-           j->name, resolution, swarf_threads(), batch, count, swarf_isa_name(swarf_isa_current()), swarf_version(),
-           t_create - t_read, t_cut - t_create, t_finish - t_cut, t_end - t_finish, t_end - t_create, leaves,
-           (double)bytes / 1048576, (double)peak / 1048576, volume, hash);
+    printf(
+        "{\"program\": \"%s\", \"resolution\": %d, \"threads\": %d, \"batch\": %zu, \"moves\": %zu, \"isa\": \"%s\", "
+        "\"version\": \"%s\", \"read_s\": %.6f, \"create_s\": %.6f, \"cut_s\": %.6f, \"finish_s\": %.6f, "
+        "\"total_s\": %.6f, \"leaves\": %zu, \"tree_mb\": %.1f, \"peak_mb\": %.1f, \"volume_mm3\": %.4f, "
+        "\"hash\": \"%016" PRIx64 "\"}\n",
+        j->name, resolution, swarf_threads(), batch, count, swarf_isa_name(swarf_isa_current()), swarf_version(),
+        t_create - t_read, t_cut - t_create, t_finish - t_cut, t_end - t_finish, t_end - t_create, leaves,
+        (double)bytes / 1048576, (double)peak / 1048576, volume, hash);
     fflush(stdout);
     swarf_stock_destroy(stock);
     swarf_cutter_release(cutter);

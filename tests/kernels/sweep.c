@@ -29,7 +29,8 @@ static size_t make_points(const oracle_body *body, const swarf_path *path, doubl
             }
     }
     const double special[][3] = {{0, 0, 0}, {-0.0, -0.0, -0.0}, {1e-40, -1e-40, 1e-300}, {1e6, -1e6, 1e6}};
-    for (size_t i = 0; i < sizeof special / sizeof special[0]; i++) memcpy(points[count++], special[i], sizeof special[i]);
+    for (size_t i = 0; i < sizeof special / sizeof special[0]; i++)
+        memcpy(points[count++], special[i], sizeof special[i]);
     for (int i = 0; i < 3; i++) points[count][i] = path->arc.centre[i];
     return count + 1;
 }
@@ -94,15 +95,23 @@ int main(void)
     swarf_path path = oracle_line(0, 0, 0, 1, 0, 0);
     const double point[3] = {0, 0, 0}, bad[3] = {0, NAN, 0};
     float value = 7;
-    CHECK_FAILS(swarf_sweep_distance(NULL, SWARF_PART_FLUTES, &path, 0.1, point, 1, &value), SWARF_ERROR_ARGUMENT, NULL);
-    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, NULL, 0.1, point, 1, &value), SWARF_ERROR_ARGUMENT, NULL);
-    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0.1, NULL, 1, &value), SWARF_ERROR_ARGUMENT, NULL);
-    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0.1, point, 1, NULL), SWARF_ERROR_ARGUMENT, NULL);
-    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0, point, 1, &value), SWARF_ERROR_ARGUMENT, NULL);
-    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, NAN, point, 1, &value), SWARF_ERROR_ARGUMENT, NULL);
-    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0.1, bad, 1, &value), SWARF_ERROR_ARGUMENT, NULL);
+    CHECK_FAILS(swarf_sweep_distance(NULL, SWARF_PART_FLUTES, &path, 0.1, point, 1, &value), SWARF_ERROR_ARGUMENT,
+                NULL);
+    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, NULL, 0.1, point, 1, &value), SWARF_ERROR_ARGUMENT,
+                NULL);
+    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0.1, NULL, 1, &value), SWARF_ERROR_ARGUMENT,
+                NULL);
+    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0.1, point, 1, NULL), SWARF_ERROR_ARGUMENT,
+                NULL);
+    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0, point, 1, &value), SWARF_ERROR_ARGUMENT,
+                NULL);
+    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, NAN, point, 1, &value), SWARF_ERROR_ARGUMENT,
+                NULL);
+    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0.1, bad, 1, &value), SWARF_ERROR_ARGUMENT,
+                NULL);
     path.end[1] = INFINITY;
-    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0.1, point, 1, &value), SWARF_ERROR_ARGUMENT, NULL);
+    CHECK_FAILS(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, 0.1, point, 1, &value), SWARF_ERROR_ARGUMENT,
+                NULL);
     CHECK(value == 7);
     swarf_cutter_release(cutter);
     return test_end();

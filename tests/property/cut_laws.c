@@ -150,8 +150,8 @@ static void check_oracle(const char *name, const swarf_cutter *cutter, const swa
         removed += sign < 0 && outside < 0;
         if (sign == 0 || (sign > 0 ? values[i] < 0 : values[i] > 0)) continue;
         if (wrong++ < 3)
-            printf("    %s, voxel %.17g at %.17g %.17g %.17g holds %.9g, material by the oracle: %d\n", name, voxel, p[0],
-                   p[1], p[2], (double)values[i], sign > 0);
+            printf("    %s, voxel %.17g at %.17g %.17g %.17g holds %.9g, material by the oracle: %d\n", name, voxel,
+                   p[0], p[1], p[2], (double)values[i], sign > 0);
     }
     CHECK(wrong == 0);
     CHECK(removed > SAMPLES / 1000);

@@ -76,7 +76,8 @@ static void run_case(int number, result *r)
         for (int i = 0; i < CHUNK && r->values < VALUES * (long)(chunk + 1); i++) {
             if (fabsf(value[i]) > 0.5f * (float)voxel) continue;
             const double wanted = oracle_distance(&body, &path, point[i]);
-            if (wanted < 0 || wanted > 0.5 * voxel || !oracle_is_smooth(&body, &path, point[i], wanted, voxel)) continue;
+            if (wanted < 0 || wanted > 0.5 * voxel || !oracle_is_smooth(&body, &path, point[i], wanted, voxel))
+                continue;
             const double error = fabs((double)value[i] - wanted) / voxel;
             r->values++;
             r->worst_value = fmax(r->worst_value, error);
@@ -127,10 +128,11 @@ int main(int count, char **argument)
         const int good = CHECK(!r->error) & CHECK(r->points == (long)points_per_case) & CHECK(r->wrong == 0) &
                          CHECK(r->off == 0) & CHECK(r->undecided <= r->points / (curved ? 20 : 200));
         if (!good)
-            printf("[%d %d] %s, %s: %ld of %ld signs wrong (worst at %.3g voxels), %ld undecided, %ld of %ld values off "
-                   "(worst %.3g voxels)\n",
-                   number / CASE_MOTIONS, number % CASE_MOTIONS, cutter_name, motion_name, r->wrong, r->points,
-                   r->worst_sign, r->undecided, r->off, r->values, r->worst_value);
+            printf(
+                "[%d %d] %s, %s: %ld of %ld signs wrong (worst at %.3g voxels), %ld undecided, %ld of %ld values off "
+                "(worst %.3g voxels)\n",
+                number / CASE_MOTIONS, number % CASE_MOTIONS, cutter_name, motion_name, r->wrong, r->points,
+                r->worst_sign, r->undecided, r->off, r->values, r->worst_value);
         for (int i = 0; i < r->texts; i++) printf("    %s", r->text[i]);
     }
     printf("%ld points, %ld too near the surface to decide\n", points, undecided);

@@ -37,8 +37,8 @@ static swarf_status make_form(int index, swarf_cutter **out)
 {
     static const swarf_profile_node concave[] = {
         {0, 0, 0}, {1, 0, -0.41421356237309503}, {2, 1, 0}, {2, 5, 0}, {0, 5, 0}};
-    static const swarf_profile_node bulging[] = {
-        {0, 0, 0.2}, {1.2, 0.5, 0.6}, {1.2, 2.5, 0}, {0.8, 3, 0}, {1.6, 3.8, 0}, {1.6, 5, 0}, {0, 5, 0}};
+    static const swarf_profile_node bulging[] = {{0, 0, 0.2},   {1.2, 0.5, 0.6}, {1.2, 2.5, 0}, {0.8, 3, 0},
+                                                 {1.6, 3.8, 0}, {1.6, 5, 0},     {0, 5, 0}};
     const int second = index == CASE_CUTTERS - 1;
     const swarf_cutter_part part = {SWARF_PART_FLUTES, second ? bulging : concave, second ? 7 : 5};
     return swarf_cutter_create(&part, 1, out);
@@ -71,7 +71,8 @@ swarf_cutter *case_cutter(int index, const char **name)
 
 static swarf_path random_arc(test_random *random, int plane, double rise)
 {
-    const double start[3] = {test_random_in(random, -5, 5), test_random_in(random, -5, 5), test_random_in(random, -5, 5)};
+    const double start[3] = {test_random_in(random, -5, 5), test_random_in(random, -5, 5),
+                             test_random_in(random, -5, 5)};
     const double radius = test_random_in(random, 0.2, 6), angle = test_random_in(random, -3.14, 3.14);
     const int u = plane == SWARF_PLANE_XY ? 0 : plane == SWARF_PLANE_ZX ? 2 : 1;
     double centre[3] = {start[0], start[1], start[2]};
@@ -93,7 +94,9 @@ swarf_path case_motion(int index, test_random *random, const char **name, int *c
     case 4: *name = "plunge"; return oracle_line(0.31, -0.22, 3.7, 0.31, -0.22, -0.4);
     case 5: *name = "zero length"; return oracle_line(0.31, -0.22, 3.7, 0.31, -0.22, 3.7);
     case 6: *name = "arc"; return oracle_arc(origin, (double[3]){-3.1, 0.6, 0}, SWARF_PLANE_XY, 1.9, 0);
-    case 7: *name = "tight arc, clockwise"; return oracle_arc(origin, (double[3]){1.6, 0.1, 0}, SWARF_PLANE_XY, -3.7, 0);
+    case 7:
+        *name = "tight arc, clockwise";
+        return oracle_arc(origin, (double[3]){1.6, 0.1, 0}, SWARF_PLANE_XY, -3.7, 0);
     case 8: *name = "full circle"; return oracle_arc(origin, (double[3]){-2.1, 0.6, 0}, SWARF_PLANE_XY, 2 * pi, 0);
     case 9:
         *name = "helix", *curved = 1;

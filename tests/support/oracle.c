@@ -114,8 +114,7 @@ static int part_contains(const oracle_body *body, int part, double r, double z)
             r < e->from[0] + (e->to[0] - e->from[0]) * (z - e->from[1]) / (e->to[1] - e->from[1]))
             inside ^= 1;
         if (e->radius > 0 && hypot(r - e->centre[0], z - e->centre[1]) < e->radius) {
-            const double side =
-                (e->to[0] - e->from[0]) * (z - e->from[1]) - (e->to[1] - e->from[1]) * (r - e->from[0]);
+            const double side = (e->to[0] - e->from[0]) * (z - e->from[1]) - (e->to[1] - e->from[1]) * (r - e->from[0]);
             if ((side < 0) == (e->turn_rad > 0) && side != 0) inside ^= 1;
         }
     }
@@ -148,8 +147,8 @@ double oracle_radius_at(const oracle_body *body, double z)
                 if (edge_distance(e, r, z) < 1e-9) greatest = fmax(greatest, r);
             }
         } else if ((e->from[1] > z) != (e->to[1] > z)) {
-            greatest = fmax(greatest,
-                            e->from[0] + (e->to[0] - e->from[0]) * (z - e->from[1]) / (e->to[1] - e->from[1]));
+            greatest =
+                fmax(greatest, e->from[0] + (e->to[0] - e->from[0]) * (z - e->from[1]) / (e->to[1] - e->from[1]));
         }
     }
     return greatest;
@@ -246,7 +245,8 @@ static int sign_between(const search *s, double ta, double a, double tb, double 
     const double tm = 0.5 * (ta + tb), m = oracle_at(s->body, s->path, s->point, tm);
     if (m < -s->tolerance) return -1;
     const int left_first = a < b;
-    const int first = left_first ? sign_between(s, ta, a, tm, m, 0.5 * length) : sign_between(s, tm, m, tb, b, 0.5 * length);
+    const int first =
+        left_first ? sign_between(s, ta, a, tm, m, 0.5 * length) : sign_between(s, tm, m, tb, b, 0.5 * length);
     if (first < 0) return -1;
     const int second =
         left_first ? sign_between(s, tm, m, tb, b, 0.5 * length) : sign_between(s, ta, a, tm, m, 0.5 * length);
@@ -308,7 +308,8 @@ int oracle_is_smooth(const oracle_body *body, const swarf_path *path, const doub
     if (fabs(sqrt(length) - 1) > 0.01) return 0;
     const double aside[3] = {fabs(normal[0]) < 0.7, fabs(normal[0]) >= 0.7, 0};
     double u[3], v[3], size = 0;
-    for (int i = 0; i < 3; i++) u[i] = normal[(i + 1) % 3] * aside[(i + 2) % 3] - normal[(i + 2) % 3] * aside[(i + 1) % 3];
+    for (int i = 0; i < 3; i++)
+        u[i] = normal[(i + 1) % 3] * aside[(i + 2) % 3] - normal[(i + 2) % 3] * aside[(i + 1) % 3];
     for (int i = 0; i < 3; i++) size += u[i] * u[i];
     for (int i = 0; i < 3; i++) u[i] /= sqrt(size);
     for (int i = 0; i < 3; i++) v[i] = normal[(i + 1) % 3] * u[(i + 2) % 3] - normal[(i + 2) % 3] * u[(i + 1) % 3];
@@ -317,7 +318,8 @@ int oracle_is_smooth(const oracle_body *body, const swarf_path *path, const doub
         double p[3];
         for (int i = 0; i < 3; i++) p[i] = point[i] + c * u[i] + s * v[i] - distance * normal[i];
         /* From the foot of the point, 1.5 voxels along the tangent plane: how far the surface bends away. */
-        if (fabs(oracle_distance(body, path, p)) > 0.15 * voxel || oracle_sign(body, path, p, 0.3 * voxel) < 0) return 0;
+        if (fabs(oracle_distance(body, path, p)) > 0.15 * voxel || oracle_sign(body, path, p, 0.3 * voxel) < 0)
+            return 0;
     }
     return 1;
 }

@@ -33,14 +33,15 @@ int test_near(double value, double expected, double tolerance, const char *file,
 
 int test_status(swarf_status got, swarf_status wanted, const char *part, const char *file, int line, const char *text)
 {
-    const int named = wanted == SWARF_OK || (part ? strstr(swarf_error_last(), part) != NULL : swarf_error_last()[0] != 0);
+    const int named =
+        wanted == SWARF_OK || (part ? strstr(swarf_error_last(), part) != NULL : swarf_error_last()[0] != 0);
     const int ok = got == wanted && named;
     checks++;
     if (!ok) {
         failures++;
-        fprintf(stderr, "%s:%d: failed: %s gave %s (\"%s\"), expected %s%s%s\n", file, line, text, swarf_status_name(got),
-                got == SWARF_OK ? "" : swarf_error_last(), swarf_status_name(wanted), part ? " naming " : "",
-                part ? part : "");
+        fprintf(stderr, "%s:%d: failed: %s gave %s (\"%s\"), expected %s%s%s\n", file, line, text,
+                swarf_status_name(got), got == SWARF_OK ? "" : swarf_error_last(), swarf_status_name(wanted),
+                part ? " naming " : "", part ? part : "");
     }
     return ok;
 }

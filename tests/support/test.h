@@ -11,8 +11,7 @@
 /** Count a check; print place and values when it fails; the test goes on. */
 #define CHECK(condition) test_check((condition) ? 1 : 0, __FILE__, __LINE__, #condition)
 /** Both sides within `tolerance` of each other (NAN fails). */
-#define CHECK_NEAR(value, expected, tolerance) \
-    test_near((value), (expected), (tolerance), __FILE__, __LINE__, #value)
+#define CHECK_NEAR(value, expected, tolerance) test_near((value), (expected), (tolerance), __FILE__, __LINE__, #value)
 /** The call succeeds; prints the error text when not. */
 #define CHECK_OK(call) test_status((call), SWARF_OK, NULL, __FILE__, __LINE__, #call)
 /** The call fails with this status and its text contains `part` (NULL: any non-empty text). */

@@ -57,9 +57,9 @@ int main(void)
 {
     check_box(0.5, 10, 50, 0);
     check_box(0, 10.5, 0, 50);
-    check_box(2, 13, 200, 300);    /* both */
-    check_box(-30, 5, 500, 3000);  /* nodes before the stock's first */
-    check_box(40, 45, 1000, 500);  /* nothing in common */
+    check_box(2, 13, 200, 300);   /* both */
+    check_box(-30, 5, 500, 3000); /* nodes before the stock's first */
+    check_box(40, 45, 1000, 500); /* nothing in common */
     check_refusals();
     return test_end();
 }

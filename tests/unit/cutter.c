@@ -39,8 +39,8 @@ static void check_shape(const char *text, double volume, double radius, double z
     swarf_cutter_extent(cutter, SWARF_PART_FLUTES, &lo, &hi);
     const int good = CHECK_NEAR(swarf_cutter_volume(cutter, SWARF_PART_FLUTES), volume, 1e-12 * volume) &
                      CHECK_NEAR(oracle_volume(&body), volume, 1e-5 * volume) &
-                     CHECK_NEAR(swarf_cutter_radius(cutter, SWARF_PART_FLUTES), radius, 1e-12) &
-                     CHECK_NEAR(lo, 0, 0) & CHECK_NEAR(hi, z_hi, 1e-12);
+                     CHECK_NEAR(swarf_cutter_radius(cutter, SWARF_PART_FLUTES), radius, 1e-12) & CHECK_NEAR(lo, 0, 0) &
+                     CHECK_NEAR(hi, z_hi, 1e-12);
     for (int i = 1; i < 100; i++) {
         const double z = z_hi * (i + 0.123) / 100;
         const double at = swarf_cutter_radius_at(cutter, SWARF_PART_FLUTES, z);

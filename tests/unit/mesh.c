@@ -80,7 +80,8 @@ static void check_round_trips(void)
         CHECK(swarf_mesh_topology(back).closed);
         int same = view.triangle_count == triangles.triangle_count;
         for (size_t k = 0; same && k < 3 * view.triangle_count; k++)
-            same = memcmp(view.xyz + 3 * (size_t)view.index[k], triangles.xyz + 3 * (size_t)triangles.index[k], 12) == 0;
+            same =
+                memcmp(view.xyz + 3 * (size_t)view.index[k], triangles.xyz + 3 * (size_t)triangles.index[k], 12) == 0;
         CHECK(same);
         swarf_mesh_release(back);
     }
@@ -101,24 +102,27 @@ static void check_text_formats(void)
         CHECK_NEAR(swarf_mesh_topology(mesh).area_mm2, 0.75, 1e-9);
         swarf_mesh_release(mesh);
     }
-    static const char ply[] = "ply\r\nformat ascii 1.0\r\ncomment x\r\nelement vertex 4\r\nproperty uchar red\r\nproperty double x\r\n"
-                              "property float y\r\nproperty float z\r\nelement face 1\r\nproperty list uchar int vertex_index\r\n"
-                              "end_header\r\n255 0 0 0\r\n255 1 0 0\r\n255 1 1 0\r\n255 0 1 0\r\n4 0 1 2 3\r\n";
+    static const char ply[] =
+        "ply\r\nformat ascii 1.0\r\ncomment x\r\nelement vertex 4\r\nproperty uchar red\r\nproperty double x\r\n"
+        "property float y\r\nproperty float z\r\nelement face 1\r\nproperty list uchar int vertex_index\r\n"
+        "end_header\r\n255 0 0 0\r\n255 1 0 0\r\n255 1 1 0\r\n255 0 1 0\r\n4 0 1 2 3\r\n";
     if (CHECK_OK(read_text("t.ply", ply, &mesh))) {
         CHECK(swarf_mesh_triangles(mesh).triangle_count == 2);
         CHECK_NEAR(swarf_mesh_topology(mesh).area_mm2, 1, 1e-9);
         swarf_mesh_release(mesh);
     }
-    static const char obj[] = "# x\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0 1.0\nvn 0 0 1\nf 1//1 2//1 3//1\nv 0 1 0\nf -4 -2 -1\n";
+    static const char obj[] =
+        "# x\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0 1.0\nvn 0 0 1\nf 1//1 2//1 3//1\nv 0 1 0\nf -4 -2 -1\n";
     if (CHECK_OK(read_text("t.obj", obj, &mesh))) {
         CHECK_NEAR(swarf_mesh_topology(mesh).area_mm2, 1, 1e-9);
         swarf_mesh_release(mesh);
     }
     /* big-endian PLY: the numbers 1, 2, 3 and a face */
-    static const char head[] = "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty short y\n"
-                               "property char z\nelement face 1\nproperty list uchar ushort vertex_indices\nend_header\n";
-    static const unsigned char body[] = {0x3f, 0x80, 0, 0, 0, 2, 3, 0, 0, 0, 0, 0xff, 0xfe, 0, 0, 0, 0, 0, 0, 0, 0,
-                                         3,    0,    0, 0, 1, 0, 2};
+    static const char head[] =
+        "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty short y\n"
+        "property char z\nelement face 1\nproperty list uchar ushort vertex_indices\nend_header\n";
+    static const unsigned char body[] = {0x3f, 0x80, 0, 0, 0, 2, 3, 0, 0, 0, 0, 0xff, 0xfe, 0,
+                                         0,    0,    0, 0, 0, 0, 0, 3, 0, 0, 0, 1,    0,    2};
     char whole[sizeof head + sizeof body];
     memcpy(whole, head, sizeof head - 1);
     memcpy(whole + sizeof head - 1, body, sizeof body);
@@ -148,13 +152,18 @@ static void check_refusals(void)
         {"e.stl", "short", "header"},
         {"e.stl", "", "empty"},
         {"e.ply", "plx\n", "\"ply\""},
-        {"e.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\n"
-                  "end_header\n1 2 3\n", "e.ply:9"},
+        {"e.ply",
+         "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\n"
+         "end_header\n1 2 3\n",
+         "e.ply:9"},
         {"e.ply", "ply\nformat ascii 1.0\nelement vertex -1\n", "e.ply:3: '-1'"},
         {"e.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n", "x, y and z"},
         {"e.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n", "end_header"},
-        {"e.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
-                  "property list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 7\n", "face 1 uses vertex 7"},
+        {"e.ply",
+         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face "
+         "1\n"
+         "property list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 7\n",
+         "face 1 uses vertex 7"},
         {"e.obj", "v 0 0 0\nf 1 2 3\n", "e.obj:2: '2'"},
         {"e.obj", "v 0 0 0\nf 1 1\n", "three corners"},
         {"e.obj", "v 0 nan 0\n", "e.obj:1: 'nan'"},
@@ -224,7 +233,8 @@ static void check_from_stock(void)
     int calls = 0;
     const swarf_progress progress = {stop, &calls};
     CHECK_FAILS(swarf_mesh_create_stock(stock, 0, &progress, &mesh), SWARF_ERROR_CANCELLED, NULL);
-    if (CHECK_OK(swarf_stock_boolean(stock, stock, SWARF_DIFFERENCE)) && CHECK_OK(swarf_mesh_create_stock(stock, 0, NULL, &mesh))) {
+    if (CHECK_OK(swarf_stock_boolean(stock, stock, SWARF_DIFFERENCE)) &&
+        CHECK_OK(swarf_mesh_create_stock(stock, 0, NULL, &mesh))) {
         CHECK(swarf_mesh_triangles(mesh).triangle_count == 0);
         CHECK_OK(swarf_mesh_write(mesh, in_folder("empty.stl"), NULL));
         swarf_mesh_release(mesh);

@@ -88,7 +88,8 @@ static void check_tetrahedra(void)
     for (int i = 0; i < 8; i++) {
         shape s = {0};
         for (int k = 0; k < 4; k++)
-            shape_vertex(&s, test_random_in(&random, -10, 10), test_random_in(&random, -10, 10), test_random_in(&random, -10, 10));
+            shape_vertex(&s, test_random_in(&random, -10, 10), test_random_in(&random, -10, 10),
+                         test_random_in(&random, -10, 10));
         static const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
         for (int k = 0; k < 4; k++) shape_triangle(&s, (size_t)faces[k][0], (size_t)faces[k][1], (size_t)faces[k][2]);
         if (mesh_volume(&s) < 0) shape_flip(&s, 0);

@@ -193,7 +193,8 @@ static double segment(double r, double cut)
 }
 
 /* Dipping into the block along half a circle in a vertical plane. Slices across the tool: the flat end of half width w
- * sweeps the dip and 2 w more of its greatest depth; the ball's slice is a half disc, whose sweep is a larger circle. */
+ * sweeps the dip and 2 w more of its greatest depth; the ball's slice is a half disc, whose sweep is a larger circle.
+ */
 static void check_dips(test_random *random)
 {
     const double tool = 2, dip = 1.6, depth = 1.2, steps = 20000;
@@ -202,7 +203,8 @@ static void check_dips(test_random *random)
     for (int i = 0; i < steps; i++) {
         const double u = pi * ((i + 0.5) / steps - 0.5), half = tool * cos(u);
         /* the ball's centre runs `tool` above the tip; its slice reaches up to half - tool below the tip's circle */
-        exact_ball += segment(dip + half, depth - tool + half > 0 ? depth - tool + half : 0) * tool * cos(u) * pi / steps;
+        exact_ball +=
+            segment(dip + half, depth - tool + half > 0 ? depth - tool + half : 0) * tool * cos(u) * pi / steps;
     }
     const swarf_plane planes[] = {SWARF_PLANE_ZX, SWARF_PLANE_YZ};
     for (int p = 0; p < 2; p++) {
@@ -232,8 +234,8 @@ static void check_helix(test_random *random)
     for (int wide = 0; wide < 2; wide++) {
         const double ring = wide ? 2.7 : 1.1;
         const double start[3] = {ring, 0, top + pitch + 0.01};
-        const swarf_path path = oracle_arc(start, (double[3]){0, 0, 0}, SWARF_PLANE_XY, (wide ? -2 : 2) * pi * turns,
-                                           -pitch * turns);
+        const swarf_path path =
+            oracle_arc(start, (double[3]){0, 0, 0}, SWARF_PLANE_XY, (wide ? -2 : 2) * pi * turns, -pitch * turns);
         const double depth = top - path.end[2], slope = pitch / (2 * pi);
         const double inner = fabs(ring - tool), outer = ring + tool;
         double exact = ring < tool ? pi * inner * inner * depth : 0;

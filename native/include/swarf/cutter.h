@@ -58,21 +58,21 @@ typedef enum swarf_shape {
 
 /** Dimensions of a common shape, mm and degrees; NAN means "not given". */
 typedef struct swarf_dimensions {
-    size_t size;             /**< sizeof(swarf_dimensions), set by swarf_dimensions_default() */
-    double diameter;         /**< d: greatest cutting diameter */
-    double length;           /**< l: from the tip to the end of the cutting part (or of the neck) */
-    double corner_radius;    /**< r */
-    double tip_diameter;     /**< t: flat at the tip, or ball at the tip of a tapered ball */
-    double angle_deg;        /**< a: chamfer and drill: included angle of the point; tapered ball: per side;
-                                  dovetail: between the flank and the bottom plane; thread: flank angle */
-    double neck_diameter;    /**< n: of the reduced neck above the cutting edge */
-    double edge_height;      /**< h: height of the cutting edge (T-slot, dovetail) */
-    double pitch;            /**< p: thread mill */
-    double teeth;            /**< k: thread mill, rows of teeth along the axis */
-    double shank_diameter;   /**< sd: adds a cylindrical shank above the flutes */
-    double shank_length;     /**< sl: its length */
-    double holder_diameter;  /**< hd: adds a cylindrical holder above the shank */
-    double holder_length;    /**< hl: its length */
+    size_t size;            /**< sizeof(swarf_dimensions), set by swarf_dimensions_default() */
+    double diameter;        /**< d: greatest cutting diameter */
+    double length;          /**< l: from the tip to the end of the cutting part (or of the neck) */
+    double corner_radius;   /**< r */
+    double tip_diameter;    /**< t: flat at the tip, or ball at the tip of a tapered ball */
+    double angle_deg;       /**< a: chamfer and drill: included angle of the point; tapered ball: per side;
+                                 dovetail: between the flank and the bottom plane; thread: flank angle */
+    double neck_diameter;   /**< n: of the reduced neck above the cutting edge */
+    double edge_height;     /**< h: height of the cutting edge (T-slot, dovetail) */
+    double pitch;           /**< p: thread mill */
+    double teeth;           /**< k: thread mill, rows of teeth along the axis */
+    double shank_diameter;  /**< sd: adds a cylindrical shank above the flutes */
+    double shank_length;    /**< sl: its length */
+    double holder_diameter; /**< hd: adds a cylindrical holder above the shank */
+    double holder_length;   /**< hl: its length */
 } swarf_dimensions;
 
 /** All dimensions "not given". Any thread. */

@@ -23,7 +23,7 @@ typedef enum swarf_move_kind {
     SWARF_MOVE_DWELL = 2,       /**< no motion; feed_mm_min holds the seconds */
     SWARF_MOVE_TOOL_CHANGE = 3, /**< no motion; the section holds the new tool */
     SWARF_MOVE_PROBE = 4,
-    SWARF_MOVE_POSITION = 5     /**< to a place from an unknown one: moves the tool, cuts nothing */
+    SWARF_MOVE_POSITION = 5 /**< to a place from an unknown one: moves the tool, cuts nothing */
 } swarf_move_kind;
 
 /** Plane of an arc: the axis it turns about is the plane's normal (+z, +y, +x). */
@@ -54,9 +54,9 @@ typedef struct swarf_section {
 
 typedef struct swarf_move {
     double end[3];
-    float feed_mm_min; /**< 0 for rapids */
-    uint32_t line;     /**< 1-based line of the source (G-code) or command number (FreeCAD operation) */
-    int32_t arc;       /**< index into the arcs, -1 for a straight move */
+    float feed_mm_min;     /**< 0 for rapids */
+    uint32_t line;         /**< 1-based line of the source (G-code) or command number (FreeCAD operation) */
+    int32_t arc;           /**< index into the arcs, -1 for a straight move */
     uint32_t section_kind; /**< section * 8 + swarf_move_kind: use swarf_move_get_kind() */
 } swarf_move;
 

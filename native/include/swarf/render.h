@@ -48,21 +48,22 @@ SWARF_API void swarf_scene_destroy(swarf_scene *scene);
  *  (INFINITY: none) and unit normal (3 floats each; zero without a hit). `normal` may be NULL. A ray that starts in
  *  material meets nothing. SWARF_ERROR_ARGUMENT names the ray with a zero direction or a number that is not finite;
  *  SWARF_ERROR_BUSY: the stock is in use. All cores; the same bits for any threads and any grouping of rays. */
-SWARF_API swarf_status swarf_scene_cast(swarf_scene *scene, const double *origin, const double *direction,
-                                        size_t count, double *distance, float *normal);
+SWARF_API swarf_status swarf_scene_cast(swarf_scene *scene, const double *origin, const double *direction, size_t count,
+                                        double *distance, float *normal);
 
 typedef struct swarf_picture_options {
     size_t size;
-    int32_t width;    /**< pixels, 1 .. 16384 */
+    int32_t width; /**< pixels, 1 .. 16384 */
     int32_t height;
-    int32_t samples;  /**< rays per pixel edge: 1, 2, 3 or 4 (n * n rays per pixel) */
-    float colour[3];  /**< linear 0..1 base colour of the material */
+    int32_t samples;     /**< rays per pixel edge: 1, 2, 3 or 4 (n * n rays per pixel) */
+    float colour[3];     /**< linear 0..1 base colour of the material */
     float background[4]; /**< RGBA at the bottom of the picture */
     float background_top[4];
 } swarf_picture_options;
 SWARF_API swarf_picture_options swarf_picture_options_default(void);
 
-/** Gooch-shaded picture into `rgba` (4 * width * height bytes, rows from the top), sRGB, opaque unless the background is not. */
+/** Gooch-shaded picture into `rgba` (4 * width * height bytes, rows from the top), sRGB, opaque unless the background
+ * is not. */
 SWARF_API swarf_status swarf_scene_picture(swarf_scene *scene, const swarf_camera *camera,
                                            const swarf_picture_options *options, const swarf_progress *progress,
                                            uint8_t *rgba);

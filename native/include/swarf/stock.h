@@ -18,9 +18,9 @@ extern "C" {
 typedef struct swarf_stock swarf_stock;
 
 typedef struct swarf_stock_options {
-    size_t size;           /**< sizeof(swarf_stock_options) */
-    double voxel_mm;       /**< edge of a voxel, > 0 */
-    size_t memory_limit;   /**< bytes the stock may need; 0: 80 % of what is free now */
+    size_t size;         /**< sizeof(swarf_stock_options) */
+    double voxel_mm;     /**< edge of a voxel, > 0 */
+    size_t memory_limit; /**< bytes the stock may need; 0: 80 % of what is free now */
 } swarf_stock_options;
 
 /** voxel 0 (must be set), no explicit memory limit. */
@@ -91,8 +91,8 @@ typedef struct swarf_tool {
 
 typedef struct swarf_simulation_options {
     size_t size;
-    size_t batch;          /**< moves cut at once; 0: as many as share a tool and an operation; 1: move by move */
-    int removed_per_move;  /**< measure each move (implies batch 1) */
+    size_t batch;         /**< moves cut at once; 0: as many as share a tool and an operation; 1: move by move */
+    int removed_per_move; /**< measure each move (implies batch 1) */
 } swarf_simulation_options;
 SWARF_API swarf_simulation_options swarf_simulation_options_default(void);
 
