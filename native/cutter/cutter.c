@@ -20,7 +20,8 @@ swarf_profile_piece swarf_profile_piece_get(const swarf_profile_node *node, cons
     swarf_profile_piece piece = {.r0 = node->r, .z0 = node->z, .r1 = next->r, .z1 = next->z, .convex = 1};
     const double dr = next->r - node->r, dz = next->z - node->z, b = node->bulge;
     const double chord = hypot(dr, dz);
-    if (b == 0 || chord < same) return piece;
+    /* an arc this close to its chord is the chord: its centre would lie too far away to compute with */
+    if (chord < same || 0.5 * chord * fabs(b) < same) return piece;
     /* the centre lies on the chord's bisector; left of the chord for a counter-clockwise minor arc */
     const double offset = (1 - b * b) / (4 * b);
     piece.centre_r = 0.5 * (node->r + next->r) - dz * offset;
@@ -69,6 +70,10 @@ static swarf_status copy_part(const swarf_cutter_part *part, swarf_cutter_part *
         swarf_profile_node node = part->nodes[i];
         if (!isfinite(node.r) || !isfinite(node.z) || !isfinite(node.bulge))
             status = swarf_fail(SWARF_ERROR_ARGUMENT, "cutter: node %zu of the %s is not finite", i, name);
+        else if (fabs(node.r) > SWARF_CUTTER_LIMIT_MM || fabs(node.z) > SWARF_CUTTER_LIMIT_MM)
+            status = swarf_fail(SWARF_ERROR_GEOMETRY,
+                                "cutter: node %zu of the %s lies at r %g, z %g mm; at most %g mm is possible", i, name,
+                                node.r, node.z, SWARF_CUTTER_LIMIT_MM);
         else if (node.r < -same)
             status =
                 swarf_fail(SWARF_ERROR_GEOMETRY,

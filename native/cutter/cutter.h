@@ -5,6 +5,9 @@
 
 #include "swarf/cutter.h"
 
+/** Nothing that turns in a spindle is larger (mm); beyond it floats of voxels would lose the band without a word. */
+#define SWARF_CUTTER_LIMIT_MM 1e4
+
 struct swarf_cutter {
     int references; /* only by atomic operations */
     size_t part_count;

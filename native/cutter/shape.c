@@ -2,6 +2,7 @@
 /* The common shapes as meridians. */
 #include "cutter/shape.h"
 #include "base/status.h"
+#include "cutter/cutter.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -99,9 +100,9 @@ static swarf_status check_dimensions(swarf_shape shape, const swarf_dimensions *
         SWARF_REQUIRE(above || listed(entry->known, dimension->letters), "cutter: %s has no %s (%s); it takes %s",
                       entry->name, dimension->letters, dimension->words, entry->known);
         const int may_be_zero = dimension->letters[0] == 't' || dimension->letters[0] == 'r';
-        SWARF_REQUIRE(isfinite(value) && (value > 0 || (value == 0 && may_be_zero)),
-                      "cutter: %s (%s) of %s is %g; it must be a positive number", dimension->letters, dimension->words,
-                      entry->name, value);
+        SWARF_REQUIRE(value <= SWARF_CUTTER_LIMIT_MM && (value > 0 || (value == 0 && may_be_zero)),
+                      "cutter: %s (%s) of %s is %g; it must be a positive number up to %g", dimension->letters,
+                      dimension->words, entry->name, value, SWARF_CUTTER_LIMIT_MM);
     }
     SWARF_REQUIRE(isnan(d->shank_diameter) == isnan(d->shank_length), "cutter: a shank needs both sd and sl");
     SWARF_REQUIRE(isnan(d->holder_diameter) == isnan(d->holder_length), "cutter: a holder needs both hd and hl");

@@ -32,10 +32,13 @@ typedef struct outline {
     const swarf_cutter *cutter;
     swarf_part_kind kind;
     double z_lo, z_hi;
-    double tolerance; /* of the chords of hollow arcs */
+    double tolerance;   /* of the chords that stand for arcs */
+    double largest_arc; /* radius up to which a convex arc stays one */
 } outline;
 
 static const double tiny = 1e-9;
+/* Convex arcs of a larger radius, in voxels, become chords: a float holds their centre to 1/250 voxel, less beyond. */
+static const double largest_arc_voxels = 65536;
 /* Angles closer than this are one: CAD arcs meet their tangents no better. */
 static const double same_angle = 1e-6;
 
@@ -76,14 +79,16 @@ static swarf_status add_convex_arc(outline *o, const swarf_profile_piece *p)
     return add_face(o, f);
 }
 
-/* A hollow arc becomes chords that leave it by no more than the tolerance; their ends lie on it. */
-static swarf_status add_hollow_arc(outline *o, const swarf_profile_piece *p)
+/* Chords that leave an arc by no more than the tolerance; their ends lie on it. */
+static swarf_status add_chords(outline *o, const swarf_profile_piece *p)
 {
     const double from = atan2(p->z0 - p->centre_z, p->r0 - p->centre_r);
-    double turn = atan2(p->z1 - p->centre_z, p->r1 - p->centre_r) - from; /* clockwise: negative */
-    if (turn > 0) turn -= 2 * M_PI;
-    const double step = 2 * acos(fmax(0.5, 1 - o->tolerance / p->radius));
-    const int count = (int)ceil(-turn / step);
+    /* arcs are half a circle at most; from the chord, as the difference of two angles would be all rounding when the
+     * centre is far away */
+    const double chord = hypot(p->r1 - p->r0, p->z1 - p->z0);
+    const double turn = (p->convex ? 2 : -2) * asin(fmin(1, 0.5 * chord / p->radius));
+    const double step = 4 * asin(fmin(0.5, sqrt(0.5 * o->tolerance / p->radius))); /* height of its arc: tolerance */
+    const int count = (int)fmax(1, ceil(fabs(turn) / step));
     double r = p->r0, z = p->z0;
     for (int i = 1; i <= count; i++) {
         const double angle = from + turn * i / count;
@@ -165,10 +170,10 @@ static swarf_status collect_faces(outline *o, const swarf_cutter_part *part)
         const swarf_profile_piece p = swarf_profile_piece_get(&part->nodes[i], &part->nodes[i + 1]);
         if (p.radius == 0)
             SWARF_TRY(add_line(o, p.r0, p.z0, p.r1, p.z1));
-        else if (p.convex)
+        else if (p.convex && p.radius <= o->largest_arc)
             SWARF_TRY(add_convex_arc(o, &p));
         else
-            SWARF_TRY(add_hollow_arc(o, &p));
+            SWARF_TRY(add_chords(o, &p));
     }
     return SWARF_OK;
 }
@@ -317,7 +322,10 @@ swarf_status swarf_body_create(const swarf_cutter *cutter, swarf_part_kind kind,
     swarf_body *body = calloc(1, sizeof *body);
     if (!body) return swarf_fail(SWARF_ERROR_MEMORY, "cutter: out of memory");
     /* half of the promised bound, the rest is left to rounding */
-    outline o = {.cutter = cutter, .kind = kind, .tolerance = 0.5 * SWARF_SWEEP_BOUND * voxel};
+    outline o = {.cutter = cutter,
+                 .kind = kind,
+                 .tolerance = 0.5 * SWARF_SWEEP_BOUND * voxel,
+                 .largest_arc = largest_arc_voxels * voxel};
     swarf_cutter_extent(cutter, kind, &o.z_lo, &o.z_hi);
     swarf_status status = SWARF_OK;
     for (size_t i = 0; i < cutter->part_count && status == SWARF_OK; i++) {

@@ -158,6 +158,7 @@ static void check_refused_text(void)
         {"flat:d=nan,l=18", "nan"},
         {"flat:d=inf,l=18", "inf"},
         {"flat:d=1e999,l=18", "1e999"},
+        {"flat:d=6,l=1e9", "up to 10000"},
         {"flat:d=3,l=18,q=1", "q"},
         {"flat:d=3,l=18,r=1", "r"},
         {"flat:d=3,l=18,sd=6", "sl"},
@@ -221,6 +222,9 @@ static void check_refused_parts(void)
     /* The arc leaves downwards, or dips behind the axis. */
     static const swarf_profile_node dips[] = {{0, 0, 0}, {1, 0, 0.9}, {3, 0.5, 0}, {3, 4, 0}};
     static const swarf_profile_node behind[] = {{0, 0, 0}, {0.5, 0, -0.9}, {0.5, 4, 0}};
+    /* Larger than anything that turns in a spindle. */
+    static const swarf_profile_node wide[] = {{0, 0, 0}, {2e4, 0, 0}, {2e4, 4, 0}};
+    static const swarf_profile_node high[] = {{0, 0, 0}, {2, 0, 0}, {2, 1e300, 0}};
     static const struct {
         const swarf_profile_node *nodes;
         size_t count;
@@ -229,7 +233,8 @@ static void check_refused_parts(void)
         {down, 4, SWARF_ERROR_GEOMETRY}, {negative, 3, SWARF_ERROR_GEOMETRY}, {flat, 2, SWARF_ERROR_GEOMETRY},
         {thin, 2, SWARF_ERROR_GEOMETRY}, {infinite, 3, SWARF_ERROR_ARGUMENT}, {bulge, 3, SWARF_ERROR_ARGUMENT},
         {dips, 4, SWARF_ERROR_GEOMETRY}, {behind, 3, SWARF_ERROR_GEOMETRY},   {down, 1, SWARF_ERROR_GEOMETRY},
-        {down, 0, SWARF_ERROR_GEOMETRY}, {NULL, 3, SWARF_ERROR_ARGUMENT},
+        {down, 0, SWARF_ERROR_GEOMETRY}, {NULL, 3, SWARF_ERROR_ARGUMENT},     {wide, 3, SWARF_ERROR_GEOMETRY},
+        {high, 3, SWARF_ERROR_GEOMETRY},
     };
     for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
         const swarf_cutter_part part = {SWARF_PART_FLUTES, refused[i].nodes, refused[i].count};
@@ -249,6 +254,29 @@ static void check_refused_parts(void)
     CHECK_FAILS(swarf_cutter_create_shape(SWARF_SHAPE_FLAT, NULL, &cutter), SWARF_ERROR_ARGUMENT, NULL);
 }
 
+/* A side bulging ever less comes ever closer to the straight one, however far away the centres of its arcs are. */
+static void check_slight_arcs(void)
+{
+    const double voxel = 0.5, chord = hypot(0.1, 15);
+    const swarf_path path = {.start = {0, 0, 5}, .end = {0, 0, 0}, .has_motion = 1};
+    for (int exponent = 3; exponent <= 16; exponent++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            const double bulge = sign * pow(10, -exponent);
+            const swarf_profile_node nodes[] = {{0, 0, 0}, {5, 0, bulge}, {5.1, 15, 0}};
+            const swarf_cutter_part part = {SWARF_PART_FLUTES, nodes, 3};
+            swarf_cutter *cutter = NULL;
+            if (!CHECK_OK(swarf_cutter_create(&part, 1, &cutter))) continue;
+            const double lowest = 7, r = 5 + 0.1 * lowest / 15;
+            const double points[] = {r + 0.05, 0, lowest, r, 0, lowest, 0, r - 0.05, lowest};
+            float found[3];
+            const double allowed = 0.5 * chord * fabs(bulge) + 2 * SWARF_SWEEP_BOUND * voxel;
+            int good = CHECK_OK(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, voxel, points, 3, found));
+            for (int i = 0; i < 3 && good; i++) good = CHECK_NEAR(found[i], 0.05 * (1 - i), allowed);
+            if (!good) printf("    of bulge %g\n", bulge);
+            swarf_cutter_release(cutter);
+        }
+}
+
 int main(void)
 {
     check_shapes();
@@ -256,5 +284,6 @@ int main(void)
     check_parts();
     check_refused_text();
     check_refused_parts();
+    check_slight_arcs();
     return test_end();
 }
