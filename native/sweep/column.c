@@ -17,7 +17,6 @@ static swarf_status reserve(swarf_column *column, size_t count)
     for (int i = 0; i < 5; i++) ok &= (column->list[i] = malloc(room * sizeof(int32_t))) != NULL;
     ok &= (column->bound = malloc(room * sizeof(float))) != NULL;
     ok &= (column->floor = malloc(room * sizeof(float))) != NULL;
-    for (int i = 0; i < 4; i++) ok &= (column->capsule[i] = malloc(room * sizeof(float))) != NULL;
     ok &= (column->kind = malloc(room)) != NULL;
     if (!ok) {
         swarf_column_free(column);
@@ -33,7 +32,6 @@ void swarf_column_free(swarf_column *column)
     for (int i = 0; i < 5; i++) free(column->list[i]);
     free(column->bound);
     free(column->floor);
-    for (int i = 0; i < 4; i++) free(column->capsule[i]);
     free(column->kind);
     memset(column, 0, sizeof *column);
 }

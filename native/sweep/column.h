@@ -51,8 +51,7 @@ typedef struct swarf_column {
     uint8_t *kind;
     int32_t *list[5]; /* numbers of tracks: all, and what is left at each level of refinement */
     float *bound;     /* lower bounds beside a list */
-    float *floor;     /* least heights of the bottom (balls: lower bounds of the shaft) beside a list */
-    float *capsule[4]; /* balls: distance and its gradient beside a list */
+    float *floor;     /* least heights of the bottom beside a list */
     size_t room, count;
     double middle[3]; /* what the floats are relative to */
     int arcs;         /* 1 when any track is an arc */

@@ -102,38 +102,18 @@ INLINE void shaft_most(const struct sixteen *t, const swarf_block *b, float reac
     bounds->covers = maximum(lateral, above);
 }
 
-/* Distance from the middle of the block to sixteen tracks of a ball's centre, less the radius, and its gradient. */
-struct capsule {
-    lanes distance, x, y, z;
-};
-
-INLINE struct capsule capsule_distance(const swarf_column *c, const int32_t *at, const struct sixteen *t,
-                                       const swarf_block *b, float radius, float centre)
+/* Distance from the middle of the block to sixteen tracks of the ball's centre, less the radius. */
+INLINE lanes capsule_distance(const swarf_column *c, const int32_t *at, const struct sixteen *t, const swarf_block *b,
+                              float radius, float centre)
 {
     float *const *f = c->field;
     const lanes dx = gather(f[COLUMN_DX], at), dy = gather(f[COLUMN_DY], at), dz = gather(f[COLUMN_DZ], at);
     const lanes ez = all(b->z) - t->z - centre;
     const lanes q = clamped(t->x * dx + t->y * dy + ez * dz, gather(f[COLUMN_T0], at), gather(f[COLUMN_T1], at));
     const lanes fx = t->x - q * dx, fy = t->y - q * dy, fz = ez - q * dz;
-    const lanes length = root(fx * fx + fy * fy + fz * fz), unit = all(1) / maximum(length, all(1e-6f));
+    const lanes line = root(fx * fx + fy * fy + fz * fz);
     const lanes arc = root(t->arc * t->arc + ez * ez);
-    return (struct capsule){pick(t->is_arc, arc, length) - radius, fx * unit, fy * unit, fz * unit};
-}
-
-/* Of balls: does the capsule of the champion lie nearer than another everywhere in the block? A distance to a convex set
- * is convex, so it is at least its tangent plane, and bends no more than 1 / (distance to the axis): with the gradients
- * at the middle, (d - d0)(p) >= d - d0 - |g - g0| r - r^2 / (2 rho). */
-INLINE int farther(const float *const capsule[4], size_t i, size_t champion, float radius, float corner)
-{
-    const float rho = capsule[0][champion] + radius - corner;
-    if (!(rho > 0.5f)) return 0;
-    float turn = 0;
-    for (int k = 1; k < 4; k++) {
-        const float step = capsule[k][i] - capsule[k][champion];
-        turn += step * step;
-    }
-    const float margin = 1e-3f; /* of rounding */
-    return capsule[0][i] - capsule[0][champion] > sqrtf(turn) * corner + corner * corner / (2 * rho) + margin;
+    return pick(t->is_arc, arc, line) - radius;
 }
 
 INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, const swarf_block *b)
@@ -180,47 +160,36 @@ static int cull(const swarf_body *body, const swarf_column *c, const int32_t *in
     const int ball = body->kind == SWARF_BODY_BALL;
     const float lo = ball ? body->core_lo : body->z_lo;
     float *bound = c->bound, *floor = c->floor;
-    float *const capsules[4] = {c->capsule[0], c->capsule[1], c->capsule[2], c->capsule[3]};
     lanes best = all(far_away);
     size_t kept = 0, champion = SIZE_MAX;
-    float champion_at = far_away; /* cylinders: height of its bottom; balls: distance of its capsule */
+    float champion_floor = far_away;
     for (size_t i = 0; i < count; i += LANES) {
         const int32_t *at = in + i;
         const struct sixteen t = gather_tracks(c, at, b);
         struct shaft_bounds bounds;
         shaft_least(&t, b, reach, body->radius, lo, body->z_hi, &bounds);
         shaft_most(&t, b, reach, body->core_radius, body->core_lo, body->core_hi, &bounds);
-        lanes least = bounds.least, rank = pick(less(bounds.covers, all(-SWARF_HALF_WIDTH)), bounds.floor_most, all(far_away));
-        struct capsule capsule = {.distance = all(0)};
         if (ball) {
-            capsule = capsule_distance(c, at, &t, b, body->radius, body->core_lo);
-            least = minimum(least, capsule.distance - corner);
-            bounds.most = minimum(bounds.most, capsule.distance + corner);
-            rank = pick(t.is_arc, all(far_away), capsule.distance);
+            const lanes capsule = capsule_distance(c, at, &t, b, body->radius, body->core_lo);
+            bounds.least = minimum(bounds.least, capsule - corner);
+            bounds.most = minimum(bounds.most, capsule + corner);
         }
         const unsigned valid = count - i >= LANES ? 0xffffu : (1u << (count - i)) - 1;
         if (bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
-        unsigned keep = bits(less(least, all(SWARF_HALF_WIDTH))) & valid;
+        unsigned keep = bits(less(bounds.least, all(SWARF_HALF_WIDTH))) & valid;
         if (!keep) continue;
-        float lows[LANES], highs[LANES], floors[LANES], ranks[LANES], parts[4][LANES];
-        store(lows, least);
+        float lows[LANES], highs[LANES], floors[LANES], ceilings[LANES];
+        store(lows, bounds.least);
         store(highs, bounds.most);
-        store(floors, ball ? bounds.least : bounds.floor_least);
-        store(ranks, rank);
-        if (ball) {
-            store(parts[0], pick(t.is_arc, all(-far_away), capsule.distance));
-            store(parts[1], capsule.x);
-            store(parts[2], capsule.y);
-            store(parts[3], capsule.z);
-        }
+        store(floors, bounds.floor_least);
+        store(ceilings, pick(less(bounds.covers, all(-SWARF_HALF_WIDTH)), bounds.floor_most, all(far_away)));
         for (; keep; keep &= keep - 1) {
             const int lane = __builtin_ctz(keep);
             out[kept] = at[lane];
             bound[kept] = lows[lane];
             floor[kept] = floors[lane];
-            for (int k = 0; ball && k < 4; k++) capsules[k][kept] = parts[k][lane];
-            if (ranks[lane] < champion_at) {
-                champion_at = ranks[lane];
+            if (ceilings[lane] < champion_floor) {
+                champion_floor = ceilings[lane];
                 champion = kept;
             }
             kept++;
@@ -228,19 +197,13 @@ static int cull(const swarf_body *body, const swarf_column *c, const int32_t *in
         }
     }
     if (kept > 1) {
-        /* A track that is everywhere farther than another one is anywhere does not matter. Nor does a cylinder whose bottom
-         * is nowhere below that of one that covers the block from side to side, nor a ball farther than the nearest one
-         * everywhere, if its shaft does not come into it. */
+        /* A track that is everywhere farther than another one is anywhere does not matter; nor does, of cylinders, one
+         * whose bottom is nowhere below that of another which covers the block from side to side. */
         const float limit = least_lane(best);
         const int flat = body->kind == SWARF_BODY_CYLINDER;
         size_t left = 0;
         for (size_t i = 0; i < kept; i++) {
-            int matters = bound[i] <= limit;
-            if (matters && champion != SIZE_MAX) {
-                if (flat) matters = floor[i] < champion_at;
-                else if (ball && floor[i] > limit)
-                    matters = !farther((const float *const *)capsules, i, champion, body->radius, corner);
-            }
+            const int matters = bound[i] <= limit && !(flat && floor[i] >= champion_floor);
             if (matters || i == champion) out[left++] = out[i];
         }
         kept = left;
