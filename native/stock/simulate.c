@@ -53,30 +53,30 @@ void swarf_simulation_destroy(swarf_simulation *simulation)
 
 const double *swarf_simulation_removed(const swarf_simulation *simulation, size_t *count)
 {
-    *count = simulation->operation_count;
-    return simulation->removed;
+    *count = simulation ? simulation->operation_count : 0;
+    return simulation ? simulation->removed : NULL;
 }
 
 const double *swarf_simulation_removed_per_move(const swarf_simulation *simulation, size_t *count)
 {
-    *count = simulation->per_move_count;
-    return simulation->per_move;
+    *count = simulation ? simulation->per_move_count : 0;
+    return simulation ? simulation->per_move : NULL;
 }
 
 double swarf_simulation_volume_initial(const swarf_simulation *simulation)
 {
-    return simulation->initial;
+    return simulation ? simulation->initial : 0;
 }
 
 double swarf_simulation_volume_final(const swarf_simulation *simulation)
 {
-    return simulation->final;
+    return simulation ? simulation->final : 0;
 }
 
 const swarf_finding *swarf_simulation_findings(const swarf_simulation *simulation, size_t *count)
 {
-    *count = simulation->finding_count;
-    return simulation->findings;
+    *count = simulation ? simulation->finding_count : 0;
+    return simulation ? simulation->findings : NULL;
 }
 
 static swarf_status report_tool(struct player *player, size_t move, const swarf_section *section, const char *what)

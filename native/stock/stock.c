@@ -23,6 +23,10 @@ static const double node_bytes = 33500, leaf_bytes = 2048 + 160;
  * pockets and the walls that stand between two passes. */
 static const double surface_factor = 3;
 
+/* Voxels that OpenVDB's transforms and the floats in leaves can hold (mm), and how far from the origin positions stay
+ * good to a fraction of such a voxel: as far as a program's coordinates may lie. */
+static const double least_voxel = 1e-4, greatest_voxel = 1e4, farthest = 1e6;
+
 swarf_stock_options swarf_stock_options_default(void)
 {
     return (swarf_stock_options){.size = sizeof(swarf_stock_options)};
@@ -83,7 +87,12 @@ swarf_status swarf_stock_layout(const swarf_box *box, const swarf_stock_options 
             "stock: a voxel of %g mm may need %.3g GiB, %.3g GiB may be used; a voxel of %.2g mm or more fits", voxel,
             wanted / 0x1p30, limit / 0x1p30, fitting * 1.05);
     }
+    SWARF_REQUIRE(voxel >= least_voxel && voxel <= greatest_voxel, "stock: a voxel of %g mm; %g to %g mm are possible",
+                  voxel, least_voxel, greatest_voxel);
     for (int k = 0; k < 3; k++) {
+        SWARF_REQUIRE(box->lo[k] >= -farthest && box->hi[k] <= farthest,
+                      "stock: it reaches from %g to %g mm in %c; -%g to %g mm are possible", box->lo[k], box->hi[k],
+                      "xyz"[k], farthest, farthest);
         /* a face within a billionth of a voxel of a whole number is that number */
         const double voxels = ceil((box->hi[k] - box->lo[k]) / voxel - 1e-9);
         const double nodes = ceil((voxels + 2 * PADDING) / SWARF_NODE_DIM);

@@ -2,12 +2,14 @@
 /* Stock by stock, on copies of both trees: OpenVDB's operations take the operands apart. */
 #include "base/arena.hpp"
 #include "base/guard.hpp"
+#include "base/memory.h"
 #include "stock/stock.h"
 #include "stock/vdb_tree.hpp"
 
 #include <openvdb/tools/Composite.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -30,6 +32,24 @@ swarf_status find_shift(const swarf_tree &own, const swarf_tree &other, openvdb:
         out[k] = static_cast<int>(std::lround(shift)) + own.base[k] - other.base[k];
     }
     return SWARF_OK;
+}
+
+/* Refuse a union that would not fit: a stock has all nodes between its parts, however far apart they lie. */
+swarf_status check_union(const swarf_tree &own, const swarf_tree &other, const openvdb::Coord &shift)
+{
+    double nodes = 1;
+    for (int k = 0; k < 3; k++) {
+        const double own_lo = own.base[k], other_lo = static_cast<double>(other.base[k]) + shift[k];
+        const double own_hi = own_lo + own.layout.count[k] * static_cast<double>(SWARF_NODE_DIM);
+        const double other_hi = other_lo + other.layout.count[k] * static_cast<double>(SWARF_NODE_DIM);
+        nodes *= std::ceil((std::max(own_hi, other_hi) - std::min(own_lo, other_lo)) / SWARF_NODE_DIM);
+    }
+    const double wanted = nodes * (sizeof(swarf_vdb_node) + SWARF_NODE_WORDS * sizeof(uint64_t));
+    const size_t left = swarf_memory_free();
+    if (left == SIZE_MAX || wanted <= 0.8 * static_cast<double>(left)) return SWARF_OK;
+    return swarf_fail(SWARF_ERROR_MEMORY,
+                      "stock: the two lie too far apart for one: that may need %.3g GiB, %.3g GiB may be used",
+                      wanted / 0x1p30, 0.8 * static_cast<double>(left) / 0x1p30);
 }
 
 openvdb::FloatTree::Ptr shifted_copy(const openvdb::FloatTree &tree, const openvdb::Coord &shift)
@@ -69,6 +89,7 @@ extern "C" swarf_status swarf_stock_boolean(swarf_stock *stock, swarf_stock *oth
         status = swarf_guard("stock boolean", [&]() -> swarf_status {
             openvdb::Coord shift;
             SWARF_TRY(find_shift(*stock->tree, *other->tree, shift));
+            if (operation == SWARF_UNION) SWARF_TRY(check_union(*stock->tree, *other->tree, shift));
             swarf_tree *result =
                 swarf_arena_run([&] { return combine(*stock->tree, other->tree->grid->tree(), shift, operation); });
             swarf_tree_destroy(stock->tree);

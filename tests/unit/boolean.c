@@ -75,6 +75,9 @@ static void check_refusals(void)
     swarf_stock *one = block(0, 0, 0, 10, 0.2), *half = block(0.1, 0, 0, 10, 0.2), *coarse = block(0, 0, 0, 10, 0.25);
     CHECK_FAILS(swarf_stock_boolean(one, half, SWARF_UNION), SWARF_ERROR_ARGUMENT, "along x");
     CHECK_FAILS(swarf_stock_boolean(one, coarse, SWARF_UNION), SWARF_ERROR_ARGUMENT, "0.25");
+    swarf_stock *far = block(9e5, 9e5, 9e5, 10, 0.2); /* the nodes between would take eighty thousand GiB */
+    CHECK_FAILS(swarf_stock_boolean(one, far, SWARF_UNION), SWARF_ERROR_MEMORY, "far apart");
+    swarf_stock_destroy(far);
     CHECK_FAILS(swarf_stock_boolean(one, NULL, SWARF_UNION), SWARF_ERROR_ARGUMENT, NULL);
     CHECK_FAILS(swarf_stock_boolean(one, one, (swarf_boolean)3), SWARF_ERROR_ARGUMENT, "3");
     double volume;

@@ -71,7 +71,30 @@ static void check_refused(void)
     CHECK_FAILS(swarf_stock_create_cylinder(base, none, 1, &options, &stock), SWARF_ERROR_ARGUMENT, NULL);
     CHECK_FAILS(swarf_stock_create_cylinder(base, axis, 0, &options, &stock), SWARF_ERROR_ARGUMENT, NULL);
     CHECK_FAILS(swarf_stock_create_cylinder(base, axis, NAN, &options, &stock), SWARF_ERROR_ARGUMENT, NULL);
+    /* what OpenVDB's transforms and the floats in leaves cannot hold */
+    const swarf_box tiny = {{0, 0, 0}, {1e-6, 1e-6, 1e-6}}, vast = {{0, 0, 0}, {1e300, 1e300, 1e300}};
+    options.voxel_mm = 1e-7;
+    CHECK_FAILS(swarf_stock_create_box(&tiny, &options, &stock), SWARF_ERROR_ARGUMENT, "voxel of 1e-07 mm");
+    options.voxel_mm = 1e300;
+    CHECK_FAILS(swarf_stock_create_box(&cube, &options, &stock), SWARF_ERROR_ARGUMENT, "voxel of 1e+300 mm");
+    CHECK_FAILS(swarf_stock_create_box(&vast, &options, &stock), SWARF_ERROR_ARGUMENT, "voxel of 1e+300 mm");
+    const swarf_box away = {{1e15, 0, 0}, {1.0001e15, 1, 1}};
+    options.voxel_mm = 1e4;
+    CHECK_FAILS(swarf_stock_create_box(&away, &options, &stock), SWARF_ERROR_MEMORY, NULL);
+    const swarf_box beyond = {{1e7, 0, 0}, {1e7 + 1, 1, 1}};
+    options.voxel_mm = 0.1;
+    CHECK_FAILS(swarf_stock_create_box(&beyond, &options, &stock), SWARF_ERROR_ARGUMENT, "in x");
     CHECK(stock == untouched);
+}
+
+/* Nothing was simulated: nothing is known, nothing crashes. */
+static void check_no_simulation(void)
+{
+    size_t count = 7;
+    CHECK(!swarf_simulation_removed(NULL, &count) && count == 0);
+    CHECK(!swarf_simulation_removed_per_move(NULL, &count) && count == 0);
+    CHECK(!swarf_simulation_findings(NULL, &count) && count == 0);
+    CHECK(swarf_simulation_volume_initial(NULL) == 0 && swarf_simulation_volume_final(NULL) == 0);
 }
 
 /* The refusal names a voxel size, and a stock of that size is made under the same limit. */
@@ -269,6 +292,7 @@ static void check_faces(void)
 int main(void)
 {
     check_refused();
+    check_no_simulation();
     check_memory();
     check_cut_refused();
     check_missed();
