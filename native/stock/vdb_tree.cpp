@@ -68,6 +68,26 @@ swarf_vdb_leaf *leaf_of(const swarf_tree *tree, size_t node, unsigned slot)
     return const_cast<swarf_vdb_leaf *>(holder->getTable()[slot].getChild());
 }
 
+/* Cutting makes and unmakes many leaves; those that go wait here for those that come, as memory at hand is faster than
+ * the allocator's. 2 MiB a thread at most, freed with it. */
+constexpr size_t most_spares = 1024;
+thread_local std::vector<std::unique_ptr<swarf_vdb_leaf>> spares;
+
+std::unique_ptr<swarf_vdb_leaf> take_leaf(const Coord &corner)
+{
+    if (!spares.empty()) {
+        std::unique_ptr<swarf_vdb_leaf> leaf = std::move(spares.back());
+        spares.pop_back();
+        leaf->setOrigin(corner);
+        return leaf;
+    }
+    /* PartialCreate: no buffer is filled only to be overwritten. */
+    if (spares.capacity() == 0) spares.reserve(most_spares); /* here, where running out of memory can be told */
+    auto leaf = std::make_unique<swarf_vdb_leaf>(openvdb::PartialCreate(), corner, 0.0f, false);
+    leaf->buffer().allocate();
+    return leaf;
+}
+
 void set_mask(swarf_vdb_leaf &leaf, const uint64_t mask[8])
 {
     auto &words = leaf.getValueMask();
@@ -168,9 +188,7 @@ extern "C" swarf_status swarf_tree_leaf_add(swarf_tree *tree, size_t node, unsig
 {
     return swarf_guard("stock", [&]() -> swarf_status {
         swarf_vdb_node &holder = *tree->nodes[node];
-        /* PartialCreate: no buffer is filled only to be overwritten. */
-        auto leaf = std::make_unique<swarf_vdb_leaf>(openvdb::PartialCreate(), slot_corner(holder, slot), 0.0f, false);
-        leaf->buffer().allocate();
+        auto leaf = take_leaf(slot_corner(holder, slot));
         std::memcpy(leaf->buffer().data(), values, SWARF_LEAF_SIZE * sizeof(float));
         set_mask(*leaf, mask);
         holder.addLeaf(leaf.release());
@@ -187,7 +205,11 @@ extern "C" void swarf_tree_leaf_mask(swarf_tree *tree, size_t node, unsigned slo
 extern "C" void swarf_tree_tile(swarf_tree *tree, size_t node, unsigned slot, int inside)
 {
     const float value = inside ? -tree->layout.background : tree->layout.background;
-    tree->nodes[node]->addTile(Index(slot), value, false);
+    swarf_vdb_node &holder = *tree->nodes[node];
+    if (spares.size() < spares.capacity() && holder.getChildMask().isOn(slot))
+        spares.emplace_back(holder.stealNode<swarf_vdb_leaf>(slot_corner(holder, slot), value, false));
+    else
+        holder.addTile(Index(slot), value, false);
     uint64_t &word = tree->layout.occupied[node * SWARF_NODE_WORDS + (slot >> 6)];
     const uint64_t bit = uint64_t(1) << (slot & 63);
     word = inside ? word | bit : word & ~bit;

@@ -45,8 +45,7 @@ static void fill_line(swarf_column *column, size_t k, const swarf_track *track)
 {
     const double x = column->middle[0] - track->point[0], y = column->middle[1] - track->point[1];
     const double s = clamp(x * track->ux + y * track->uy, 0, track->run);
-    const double slope = track->run > 0 ? track->rise / track->run : 0;
-    const double length = hypot(track->run, track->rise), stretch = track->run > 0 ? length / track->run : 0;
+    const double slope = track->slope, length = track->length, stretch = track->run > 0 ? length / track->run : 0;
     const int rises = track->rise > 0;
     float **f = column->field;
     f[COLUMN_X][k] = (float)(track->ux * s - x);

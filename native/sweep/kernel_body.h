@@ -370,6 +370,47 @@ static __attribute__((noinline)) void general_tilted(const swarf_body *body, con
     }
 }
 
+/* The slanted surface left by the rim of a disc on a tilted line, where it turns into the side: an elliptic cylinder
+ * that meets the side without an edge. `height`: voxels beyond the disc's middle, outwards. The distance of first order
+ * used elsewhere is off there by h^2 / 4 (distance to the seam), so near the seam the conic itself stands for it:
+ *     (height^2 / m^2 - (R^2 - w^2)) / (R + |w|)
+ * which is the side's own distance R - |w| up to the disc, and right to second order next to the seam. */
+enum { SEAM = 3 };
+
+struct slant {
+    lanes square, linear, rest;
+};
+
+INLINE struct slant slant_at(lanes aside, lanes chord, lanes scale, float m, float radius)
+{
+    const mask near = less(all(radius - SEAM), aside);
+    const lanes conic = all(1) / ((minimum(aside, all(radius)) + radius) * (m * m));
+    return (struct slant){pick(near, conic, all(0)), pick(near, all(0), scale),
+                          pick(near, all(radius) - aside, scale * chord * m)};
+}
+
+INLINE lanes slant_value(const struct slant *slant, lanes height)
+{
+    const lanes up = maximum(height, all(0));
+    return up * up * slant->square + height * slant->linear - slant->rest;
+}
+
+static __attribute__((noinline)) void cylinder_seam(float m, float radius, lanes s, lanes w, lanes side, float bottom,
+                                                    float length, float low, float high, int seam, lanes best[8])
+{
+    const lanes aside = maximum(w, all(0) - w);
+    const lanes chord2 = maximum(all(0), all(radius * radius) - w * w), chord = root(chord2);
+    const lanes scale = chord / root(chord2 + m * m * radius * radius);
+    const struct slant top = slant_at(aside, chord, scale, m, radius);
+    const struct slant under = seam ? slant_at(aside, chord, all(1), m, radius) : top;
+    const lanes at = s * m + bottom;
+    for (int z = 0; z < 8; z++) {
+        const lanes below = maximum(all(low - (float)z), slant_value(&under, at - (float)z));
+        const lanes above = maximum(all((float)z - high), slant_value(&top, all((float)z - length) - at));
+        best[z] = minimum(best[z], maximum(side, maximum(below, above)));
+    }
+}
+
 /* Cylinders on lines. Tilted: side, lowest bottom, and the slanted surface that the trailing edge of the bottom leaves,
  * scaled to unit gradient; likewise at the top. Never switched between, so that the band has no tears. `seam`: the
  * bottom lies inside of something else and only has to be on the right side. */
@@ -390,6 +431,11 @@ INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t
             const float below = low - (float)z, above = (float)z - high;
             best[z] = minimum(best[z], maximum(side, all(below > above ? below : above)));
         }
+        return;
+    }
+    /* the seam between slanted surface and side: of a ball always within the surface, of others where it is no edge */
+    if (m * m * radius > (seam ? 1.0f : 6.0f) && bits(less(all((radius - SEAM) * (radius - SEAM)), w2))) {
+        cylinder_seam(m, radius, s, w, side, bottom, length, low, high, seam, best);
         return;
     }
     const int top_near = low + length - SWARF_HALF_WIDTH < 7; /* of a long cutter it mostly is far above */

@@ -30,7 +30,9 @@ static swarf_status append_line(swarf_track_list *list, const double a[3], const
         track.run = run;
         track.ux = dx / run;
         track.uy = dy / run;
+        track.slope = track.rise / run;
     }
+    track.length = hypot(track.run, track.rise);
     return append(list, &track);
 }
 

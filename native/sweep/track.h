@@ -10,6 +10,7 @@
 typedef struct swarf_track {
     double point[3];          /* lower end of a line; an arc: its height in z */
     double ux, uy, run, rise; /* line: horizontal direction (unit), horizontal and vertical length, both >= 0 */
+    double length, slope;     /* line: in space; rise / run, 0 where it is vertical */
     double centre[2], radius; /* arc */
     double from, turn;        /* arc: angle of its start, turn > 0 counter-clockwise, at most 2 pi */
     int is_arc;
