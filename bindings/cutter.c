@@ -181,8 +181,8 @@ static PyGetSetDef cutter_getset[] = {
 static PyType_Slot cutter_slots[] = {
     {Py_tp_doc, "Cutter(text)\n--\n\n"
                 "A cutter: a body of revolution about +z, tip at z = 0, from text such as \"flat:d=3,l=18\" or\n"
-                "\"bull:d=6,r=1,l=20,sd=6,sl=30\" (shapes flat ball bull chamfer drill tapered_ball lollipop tslot\n"
-                "dovetail thread_mill form; mm and degrees). FormatError names the word that is wrong. Any thread."},
+                "\"bull:d=6,r=1,l=20,sd=6,sl=30\" (shapes flat ball bull chamfer drill taperedball lollipop tslot\n"
+                "dovetail threadmill form; mm and degrees). FormatError names the word that is wrong. Any thread."},
     {Py_tp_new, cutter_new},
     {Py_tp_dealloc, cutter_dealloc},
     {Py_tp_repr, cutter_repr},

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 import tempfile
+import threading
 import time
 from typing import NoReturn, Optional, Sequence
 
@@ -124,6 +126,8 @@ def check_gcode_job(job: Job, path: str) -> None:
 
 def run(arguments: argparse.Namespace, bar: Bar) -> int:
     """``swarf simulate``."""
+    if abs(arguments.threads) >= 1 << 31:  # no int of C's: the library could not say so
+        raise ValueError(f"threads: {arguments.threads} is not in 0 .. 1024 (0: one per core)")
     _native.set_threads(arguments.threads)
     check_outputs(arguments)
     stock = None if arguments.stock is None else specs.stock(arguments.stock)
@@ -168,9 +172,16 @@ def one_line(text: object) -> str:
     return " ".join(str(text).split())
 
 
+def interrupt_on_sigterm() -> None:
+    """Let SIGTERM end the work as Ctrl-C does: by its default it would leave half-written files behind."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+
+
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the command with these words (default: of the process); returns the exit status."""
     arguments = make_parser().parse_args(argv)
+    interrupt_on_sigterm()
     bar = Bar()
     try:
         return run(arguments, bar)

@@ -112,6 +112,13 @@ def summary(report: dict[str, Any]) -> str:
 
 def write(report: dict[str, Any], path: str) -> None:
     """Write a report as JSON, beside the target and renamed, so that a failure loses nothing. OSError."""
+    try:
+        _write(report, path)
+    except OSError as error:
+        raise OSError(f"{path}: cannot write: {error.strerror or error}") from None
+
+
+def _write(report: dict[str, Any], path: str) -> None:
     folder = os.path.dirname(os.path.abspath(path))
     handle, temporary = tempfile.mkstemp(dir=folder, prefix=".swarf-", suffix=".json")
     try:

@@ -6,10 +6,13 @@ import math
 import os
 from typing import Any
 
-from ._native import Cutter, FormatError, Mesh
+from ._native import Cutter, Error, Mesh
 from .simulate import MESH_SUFFIXES, STOCK_SUFFIXES
 
 STOCK_HELP = "box:X0,Y0,Z0,X1,Y1,Z1, cylinder:X,Y,Z,R,L (axis +Z) or cylinder:X,Y,Z,R,AX,AY,AZ, or a FILE"
+
+#: Greatest tool number, as in G-code.
+MOST_TOOL = 1_000_000
 
 
 def _numbers(spec: str, text: str, counts: tuple[int, ...], wanted: str) -> list[float]:
@@ -53,7 +56,9 @@ def tool(spec: str) -> tuple[int, Cutter, str]:
     # isdecimal() is true of other scripts' digits too; int() reads them as well.
     if not equals or not number.strip().isdecimal():
         raise ValueError(f"tool {spec!r}: wanted NUMBER=SHAPE, e.g. 1=flat:d=3,l=18")
+    if len(number) > 9 or int(number) > MOST_TOOL:
+        raise ValueError(f"tool {spec!r}: numbers up to {MOST_TOOL} are possible")
     try:
         return int(number), Cutter(text), text
-    except (FormatError, ValueError) as error:
+    except (Error, ValueError) as error:
         raise type(error)(f"tool {int(number)}: {error}") from None

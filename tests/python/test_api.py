@@ -152,6 +152,13 @@ def test_vdb_there_and_back(stock, slot, cutter, tmp_path):
     assert again.volume() == pytest.approx(stock.volume(), rel=1e-5)
 
 
+def test_cutter_documents_the_names_it_takes():
+    listed = swarf.Cutter.__doc__.split("(shapes ")[1].split(";")[0].split()
+    with pytest.raises(swarf.FormatError) as refused:
+        swarf.Cutter("none")
+    assert listed == str(refused.value).split("names are ")[1].split(", ")
+
+
 def test_compare_volume(stock, slot, cutter):
     design = swarf.Mesh.from_stock(stock)
     same = swarf.compare_volume(stock, design)

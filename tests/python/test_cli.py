@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The command line, end to end."""
 import json
+import os
+import signal
 import subprocess
 
 import pytest
@@ -103,6 +105,8 @@ def test_cylinder_stock(swarf_run, program, tmp_path):
         (("--resolution", "nan"), ["resolution"]),
         (("--resolution", "10", "--voxel", "1"), ["not allowed with"]),
         (("--threads", "-1"), ["threads"]),
+        (("--threads", "99999999999"), ["threads", "1024"]),
+        (("--voxel", "1e300"), ["voxel", "possible"]),
     ],
 )
 def test_impossible_sizes(refused, program, size, says):
@@ -131,7 +135,8 @@ def test_impossible_stocks(refused, program, tmp_path, stock, says):
 
 
 @pytest.mark.parametrize(
-    "tool", ["flat:d=3,l=18", "x=flat:d=3,l=18", "-1=flat:d=3,l=18", "1=cube:d=1", "1=", "1=flat:d=0,l=1"]
+    "tool", ["flat:d=3,l=18", "x=flat:d=3,l=18", "-1=flat:d=3,l=18", "1=cube:d=1", "1=", "1=flat:d=0,l=1", "1=form:0/0:5/0:2/5:5/3", "1=flat:d=1e9,l=5",
+             "99999999999=flat:d=3,l=18"]
 )
 def test_impossible_tools(refused, program, tool):
     refused(program, "--stock", STOCK, f"--tool={tool}", says=["tool"])
@@ -194,6 +199,26 @@ def test_help_and_version(swarf_run):
     assert status == 0
     for option in "stock tool voxel resolution threads output picture report job".split():
         assert f"--{option}" in out
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_end_it_like_an_error(launcher, tmp_path, number):
+    os.mkfifo(tmp_path / "job.nc")  # opened by us when it is opened by the command, which then waits for our words
+    command = [launcher, "simulate", "job.nc", "--stock", STOCK, "--tool", TOOL, "--output", "s.stl"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as running:
+        with open(tmp_path / "job.nc", "w", encoding="ascii") as pipe:
+            running.send_signal(number)
+            pipe.write(GCODE)
+        _, err = running.communicate(timeout=120)
+    assert (running.returncode, err) == (2, "swarf: error: interrupted\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["job.nc"]
+
+
+def test_a_report_that_cannot_be_written_is_named(tmp_path):
+    from swarf import report
+
+    with pytest.raises(OSError, match="none/r.json: cannot write"):
+        report.write({}, str(tmp_path / "none/r.json"))
 
 
 def test_a_package_of_this_name_in_the_working_folder_is_not_run(swarf_run, tmp_path):
