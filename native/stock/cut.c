@@ -96,27 +96,35 @@ static swarf_status cut_leaf(const struct cut_work *work, const swarf_column *co
     return SWARF_OK;
 }
 
-/* A cube of `edge` leaves at (x, y, z) in leaves, with the tracks that survived one level up. */
-static swarf_status cut_cube(const struct cut_work *work, const swarf_column *column, int level, const int32_t *list,
-                             size_t count, int32_t x, int32_t y, int32_t z, int edge)
+static swarf_block block_of(const swarf_column *column, const int32_t at[3], int edge)
 {
-    if (!occupied(work->layout, x, y, z, edge)) return SWARF_OK;
     const float half = 0.5f * (float)(edge * SWARF_LEAF_DIM - 1);
-    const swarf_block block = {(float)(x * SWARF_LEAF_DIM - column->middle[0]) + half,
-                               (float)(y * SWARF_LEAF_DIM - column->middle[1]) + half,
-                               (float)(z * SWARF_LEAF_DIM - column->middle[2]) + half, half, half};
-    size_t left = 0;
-    int32_t *kept = column->list[level];
-    if (work->kernel->cull(work->body, column, list, count, &block, kept, &left)) {
-        remove_cube(work, x, y, z, edge);
-        return SWARF_OK;
-    }
-    if (left == 0) return SWARF_OK;
-    if (edge == 1) return cut_leaf(work, column, kept, left, x, y, z);
+    return (swarf_block){(float)(at[0] * SWARF_LEAF_DIM - column->middle[0]) + half,
+                         (float)(at[1] * SWARF_LEAF_DIM - column->middle[1]) + half,
+                         (float)(at[2] * SWARF_LEAF_DIM - column->middle[2]) + half, half, half};
+}
+
+/* A cube of `edge` leaves at a place in leaves, with the tracks that concern it. */
+static swarf_status cut_cube(const struct cut_work *work, const swarf_column *column, const int32_t *list, size_t count,
+                             const int32_t at[3], int edge)
+{
+    if (edge == 1) return cut_leaf(work, column, list, count, at[0], at[1], at[2]);
     const int next = edge / 2;
-    for (int i = 0; i < 8; i++)
-        SWARF_TRY(cut_cube(work, column, level + 1, kept, left, x + (i >> 2) * next, y + (i >> 1 & 1) * next,
-                           z + (i & 1) * next, next));
+    int32_t *const *kept = &column->list[edge == COLUMN_LEAVES ? LIST_PARTS : LIST_LEAVES];
+    int32_t places[BLOCKS_AT_ONCE][3];
+    swarf_block blocks[BLOCKS_AT_ONCE];
+    size_t used = 0, left[BLOCKS_AT_ONCE];
+    for (int i = 0; i < BLOCKS_AT_ONCE; i++) {
+        const int32_t place[3] = {at[0] + (i >> 2) * next, at[1] + (i >> 1 & 1) * next, at[2] + (i & 1) * next};
+        if (!occupied(work->layout, place[0], place[1], place[2], next)) continue;
+        memcpy(places[used], place, sizeof place);
+        blocks[used++] = block_of(column, place, next);
+    }
+    const unsigned covered = work->kernel->cull(work->body, column, list, count, blocks, used, kept, left);
+    for (size_t i = 0; i < used; i++) {
+        if (covered >> i & 1) remove_cube(work, places[i][0], places[i][1], places[i][2], next);
+        else if (left[i]) SWARF_TRY(cut_cube(work, column, kept[i], left[i], places[i], next));
+    }
     return SWARF_OK;
 }
 
@@ -138,9 +146,17 @@ static swarf_status cut_column(void *context, size_t index)
     }
     lo = fmax(lo + work->body->z_lo - SWARF_HALF_WIDTH, 0);
     hi = fmin(hi + work->body->z_hi + SWARF_HALF_WIDTH, (double)work->layout->count[2] * SWARF_NODE_DIM - 1);
-    for (int32_t z = (int32_t)floor(lo / COLUMN); lo <= hi && z <= (int32_t)floor(hi / COLUMN); z++)
-        SWARF_TRY(cut_cube(work, column, 1, column->list[0], count, x * COLUMN_LEAVES, y * COLUMN_LEAVES,
-                           z * COLUMN_LEAVES, COLUMN_LEAVES));
+    for (int32_t z = (int32_t)floor(lo / COLUMN); lo <= hi && z <= (int32_t)floor(hi / COLUMN); z++) {
+        const int32_t at[3] = {x * COLUMN_LEAVES, y * COLUMN_LEAVES, z * COLUMN_LEAVES};
+        if (!occupied(work->layout, at[0], at[1], at[2], COLUMN_LEAVES)) continue;
+        const swarf_block block = block_of(column, at, COLUMN_LEAVES);
+        int32_t *kept = column->list[LIST_CUBE];
+        size_t left = 0;
+        if (work->kernel->cull(work->body, column, column->list[LIST_ALL], count, &block, 1, &kept, &left))
+            remove_cube(work, at[0], at[1], at[2], COLUMN_LEAVES);
+        else if (left)
+            SWARF_TRY(cut_cube(work, column, kept, left, at, COLUMN_LEAVES));
+    }
     return SWARF_OK;
 }
 

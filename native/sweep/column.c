@@ -14,9 +14,11 @@ static swarf_status reserve(swarf_column *column, size_t count)
     swarf_column_free(column);
     int ok = 1;
     for (int i = 0; i < COLUMN_FIELDS; i++) ok &= (column->field[i] = malloc(room * sizeof(float))) != NULL;
-    for (int i = 0; i < 5; i++) ok &= (column->list[i] = malloc(room * sizeof(int32_t))) != NULL;
-    ok &= (column->bound = malloc(room * sizeof(float))) != NULL;
-    ok &= (column->floor = malloc(room * sizeof(float))) != NULL;
+    for (int i = 0; i < COLUMN_LISTS; i++) ok &= (column->list[i] = malloc(room * sizeof(int32_t))) != NULL;
+    for (int i = 0; i < BLOCKS_AT_ONCE; i++) {
+        ok &= (column->bound[i] = malloc(room * sizeof(float))) != NULL;
+        ok &= (column->floor[i] = malloc(room * sizeof(float))) != NULL;
+    }
     ok &= (column->kind = malloc(room)) != NULL;
     if (!ok) {
         swarf_column_free(column);
@@ -29,9 +31,11 @@ static swarf_status reserve(swarf_column *column, size_t count)
 void swarf_column_free(swarf_column *column)
 {
     for (int i = 0; i < COLUMN_FIELDS; i++) free(column->field[i]);
-    for (int i = 0; i < 5; i++) free(column->list[i]);
-    free(column->bound);
-    free(column->floor);
+    for (int i = 0; i < COLUMN_LISTS; i++) free(column->list[i]);
+    for (int i = 0; i < BLOCKS_AT_ONCE; i++) {
+        free(column->bound[i]);
+        free(column->floor[i]);
+    }
     free(column->kind);
     memset(column, 0, sizeof *column);
 }
@@ -117,9 +121,9 @@ swarf_status swarf_column_fill(swarf_column *column, const double middle[3], con
             fill_arc(column, k, track);
         else
             fill_line(column, k, track);
-        column->list[0][k] = (int32_t)k;
+        column->list[LIST_ALL][k] = (int32_t)k;
     }
-    for (int i = 0; i < COLUMN_SLACK; i++) column->list[0][count + (size_t)i] = 0;
+    for (int i = 0; i < COLUMN_SLACK; i++) column->list[LIST_ALL][count + (size_t)i] = 0;
     column->count = count;
     return SWARF_OK;
 }

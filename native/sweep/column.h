@@ -43,15 +43,28 @@ enum swarf_column_field {
 /** What a track is, for the kernels. */
 enum { TRACK_LEVEL = 0, TRACK_TILTED = 1, TRACK_ARC = 2, TRACK_ARC_MAJOR = 4, TRACK_ARC_FULL = 8 };
 
+/** Blocks that share a list of tracks are culled together: the eight parts of a cube, the four groups of a leaf. */
+enum { BLOCKS_AT_ONCE = 8 };
+
+/** Lists of a column: all tracks, a cube of 32^3 voxels, its eight parts, their eight parts, a leaf's four groups. */
+enum {
+    LIST_ALL = 0,
+    LIST_CUBE = 1,
+    LIST_PARTS = 2,
+    LIST_LEAVES = LIST_PARTS + BLOCKS_AT_ONCE,
+    LIST_GROUPS = LIST_LEAVES + BLOCKS_AT_ONCE,
+    COLUMN_LISTS = LIST_GROUPS + 4
+};
+
 /** Kernels read and write lists in whole lanes: arrays have room for this many more. */
 enum { COLUMN_SLACK = 16 };
 
 typedef struct swarf_column {
     float *field[COLUMN_FIELDS];
     uint8_t *kind;
-    int32_t *list[5]; /* numbers of tracks: all, and what is left at each level of refinement */
-    float *bound;     /* lower bounds beside a list */
-    float *floor;     /* least heights of the bottom beside a list */
+    int32_t *list[COLUMN_LISTS];  /* numbers of tracks: all, and what is left of them at each level of refinement */
+    float *bound[BLOCKS_AT_ONCE]; /* lower bounds beside the lists being made */
+    float *floor[BLOCKS_AT_ONCE]; /* least heights of the bottom, likewise */
     size_t room, count;
     double middle[3]; /* what the floats are relative to */
     int arcs;         /* 1 when any track is an arc */

@@ -30,9 +30,10 @@ typedef struct swarf_leaf_cut {
 } swarf_leaf_cut;
 
 typedef struct swarf_kernel {
-    /** Keep of the tracks `in` those that can change a value in the block; 1: the block is all cut away. */
-    int (*cull)(const swarf_body *body, const swarf_column *column, const int32_t *in, size_t count,
-                const swarf_block *block, int32_t *out, size_t *out_count);
+    /** For each of up to BLOCKS_AT_ONCE blocks of one size, keep of the tracks `in` those that can change a value in it:
+     *  out[b] and out_count[b]. Returns the bits of the blocks that are all cut away (their lists mean nothing). */
+    unsigned (*cull)(const swarf_body *body, const swarf_column *column, const int32_t *in, size_t count,
+                     const swarf_block *blocks, size_t block_count, int32_t *const *out, size_t *out_count);
     /** values = max(values, -sweep) over all tracks of the list; 0: nothing was within reach, outputs are not set. */
     int (*cut)(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count,
                swarf_leaf_cut *leaf);

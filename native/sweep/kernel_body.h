@@ -53,10 +53,10 @@ struct shaft_bounds {
 };
 
 struct sixteen {
-    lanes x, y, ux, uy, s0, s1, m, im, z, rise; /* x, y: middle of the block relative to the base */
-    lanes s, w;
-    lanes line_s, line_s0, line_s1; /* of lines; 0 for arcs, which have other things in those fields */
-    lanes arc;                      /* plan distance of arcs, negative for lines */
+    lanes base_x, base_y, ux, uy, s0, s1, m, im, z, rise; /* s0, s1, line_s: 0 for arcs */
+    lanes dx, dy, dz, t0, t1;                             /* balls only */
+    lanes x, y, s, w, line_s;                             /* middle of the block relative to the base */
+    lanes arc;                                            /* plan distance of arcs */
     mask is_arc;
 };
 
@@ -74,8 +74,8 @@ INLINE void shaft_least(const struct sixteen *t, const swarf_block *b, float rea
 {
     const lanes bottom = t->z + lo, top = t->z + hi + t->rise;
     const lanes lateral = shaft_lateral(t, radius) - reach;
-    const lanes lowest = t->m * t->line_s0 + bottom;
-    const lanes below = lowest - (b->z + b->half_z), above = (b->z - b->half_z) - (t->m * t->line_s1 + top);
+    const lanes lowest = t->m * t->s0 + bottom;
+    const lanes below = lowest - (b->z + b->half_z), above = (b->z - b->half_z) - (t->m * t->s1 + top);
     const lanes support = t->m * t->im * reach + t->im * b->half_z;
     const lanes plane = t->m * (t->line_s - radius) + bottom;
     const lanes under = (plane - b->z) * t->im - support;
@@ -92,8 +92,8 @@ INLINE void shaft_most(const struct sixteen *t, const swarf_block *b, float reac
     const lanes lateral = shaft_lateral(t, radius) + reach;
     const lanes aside = maximum(t->w, all(0) - t->w) + reach;
     const lanes half = root(maximum(all(0), all(radius * radius) - aside * aside)); /* half chord at the far side */
-    const lanes highest_bottom = t->m * clamped(t->line_s + reach - half, t->line_s0, t->line_s1) + bottom;
-    const lanes lowest_top = t->m * clamped(t->line_s - reach + half, t->line_s0, t->line_s1) + top;
+    const lanes highest_bottom = t->m * clamped(t->line_s + reach - half, t->s0, t->s1) + bottom;
+    const lanes lowest_top = t->m * clamped(t->line_s - reach + half, t->s0, t->s1) + top;
     lanes below = highest_bottom - (b->z - b->half_z), above = (b->z + b->half_z) - lowest_top;
     below = pick(less(below, all(0)), below * t->im, below);
     above = pick(less(above, all(0)), above * t->im, above);
@@ -103,114 +103,148 @@ INLINE void shaft_most(const struct sixteen *t, const swarf_block *b, float reac
 }
 
 /* Distance from the middle of the block to sixteen tracks of the ball's centre, less the radius. */
-INLINE lanes capsule_distance(const swarf_column *c, const int32_t *at, const struct sixteen *t, const swarf_block *b,
-                              float radius, float centre)
+INLINE lanes capsule_distance(const struct sixteen *t, const swarf_block *b, float radius, float centre)
 {
-    float *const *f = c->field;
-    const lanes dx = gather(f[COLUMN_DX], at), dy = gather(f[COLUMN_DY], at), dz = gather(f[COLUMN_DZ], at);
     const lanes ez = all(b->z) - t->z - centre;
-    const lanes q = clamped(t->x * dx + t->y * dy + ez * dz, gather(f[COLUMN_T0], at), gather(f[COLUMN_T1], at));
-    const lanes fx = t->x - q * dx, fy = t->y - q * dy, fz = ez - q * dz;
+    const lanes q = clamped(t->x * t->dx + t->y * t->dy + ez * t->dz, t->t0, t->t1);
+    const lanes fx = t->x - q * t->dx, fy = t->y - q * t->dy, fz = ez - q * t->dz;
     const lanes line = root(fx * fx + fy * fy + fz * fz);
     const lanes arc = root(t->arc * t->arc + ez * ez);
     return pick(t->is_arc, arc, line) - radius;
 }
 
-INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, const swarf_block *b)
+INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, int ball)
 {
     float *const *f = c->field;
     struct sixteen t;
-    t.x = all(b->x) - gather(f[COLUMN_X], at);
-    t.y = all(b->y) - gather(f[COLUMN_Y], at);
+    t.base_x = gather(f[COLUMN_X], at);
+    t.base_y = gather(f[COLUMN_Y], at);
     t.ux = gather(f[COLUMN_UX], at);
     t.uy = gather(f[COLUMN_UY], at);
-    t.s0 = gather(f[COLUMN_S0], at);
-    t.s1 = gather(f[COLUMN_S1], at);
     t.m = gather(f[COLUMN_M], at);
     t.im = gather(f[COLUMN_IM], at);
     t.z = gather(f[COLUMN_Z], at);
     t.rise = gather(f[COLUMN_RISE], at);
-    t.s = t.x * t.ux + t.y * t.uy;
-    t.w = t.y * t.ux - t.x * t.uy;
-    t.arc = all(-1);
+    t.s0 = gather(f[COLUMN_S0], at);
+    t.s1 = gather(f[COLUMN_S1], at);
     t.is_arc = less(all(0), all(0));
-    t.line_s = t.s;
-    t.line_s0 = t.s0;
-    t.line_s1 = t.s1;
-    if (c->arcs) {
-        float plan[LANES];
-        for (int k = 0; k < LANES; k++) {
-            plan[k] = -1;
-            if (c->kind[at[k]] & TRACK_ARC) plan[k] = arc_distance(c, at[k], all(b->x), all(b->y))[0];
-        }
-        t.arc = load(plan);
-        t.is_arc = less(all(-0.5f), t.arc);
-        t.line_s = pick(t.is_arc, all(0), t.s);
-        t.line_s0 = pick(t.is_arc, all(0), t.s0);
-        t.line_s1 = pick(t.is_arc, all(0), t.s1);
+    if (c->arcs) { /* their fields hold other things; what is left of a line's formulas must come to nothing */
+        float arc[LANES];
+        for (int k = 0; k < LANES; k++) arc[k] = c->kind[at[k]] & TRACK_ARC ? 1 : 0;
+        t.is_arc = less(all(0.5f), load(arc));
+        t.s0 = pick(t.is_arc, all(0), t.s0);
+        t.s1 = pick(t.is_arc, all(0), t.s1);
+    }
+    if (ball) {
+        t.dx = gather(f[COLUMN_DX], at);
+        t.dy = gather(f[COLUMN_DY], at);
+        t.dz = gather(f[COLUMN_DZ], at);
+        t.t0 = gather(f[COLUMN_T0], at);
+        t.t1 = gather(f[COLUMN_T1], at);
     }
     return t;
 }
 
-static int cull(const swarf_body *body, const swarf_column *c, const int32_t *in, size_t count, const swarf_block *b,
-                int32_t *out, size_t *out_count)
+/* Place the tracks relative to a block. */
+INLINE void face_block(const swarf_column *c, const int32_t *at, const swarf_block *b, struct sixteen *t)
+{
+    t->x = all(b->x) - t->base_x;
+    t->y = all(b->y) - t->base_y;
+    t->s = t->x * t->ux + t->y * t->uy;
+    t->w = t->y * t->ux - t->x * t->uy;
+    t->line_s = t->s;
+    t->arc = all(0);
+    if (!c->arcs) return;
+    float plan[LANES];
+    for (int k = 0; k < LANES; k++)
+        plan[k] = c->kind[at[k]] & TRACK_ARC ? arc_distance(c, at[k], all(b->x), all(b->y))[0] : 0;
+    t->arc = load(plan);
+    t->line_s = pick(t->is_arc, all(0), t->s);
+}
+
+/* What is known of one block while its list is made. */
+struct culling {
+    lanes best;
+    size_t kept, champion;
+    float champion_floor;
+};
+
+/* Look at up to sixteen tracks; 1 when one of them covers the block. */
+INLINE int cull_sixteen(const swarf_body *body, const swarf_column *c, const int32_t *at, unsigned valid,
+                        const swarf_block *b, struct sixteen *t, struct culling *state, int32_t *out, float *bound,
+                        float *floor)
 {
     const float reach = b->half * 1.41421357f; /* from the middle of the block to its vertical edges */
-    const float corner = sqrtf(reach * reach + b->half_z * b->half_z);
     const int ball = body->kind == SWARF_BODY_BALL;
-    const float lo = ball ? body->core_lo : body->z_lo;
-    float *bound = c->bound, *floor = c->floor;
-    lanes best = all(far_away);
-    size_t kept = 0, champion = SIZE_MAX;
-    float champion_floor = far_away;
-    for (size_t i = 0; i < count; i += LANES) {
-        const int32_t *at = in + i;
-        const struct sixteen t = gather_tracks(c, at, b);
-        struct shaft_bounds bounds;
-        shaft_least(&t, b, reach, body->radius, lo, body->z_hi, &bounds);
-        shaft_most(&t, b, reach, body->core_radius, body->core_lo, body->core_hi, &bounds);
-        if (ball) {
-            const lanes capsule = capsule_distance(c, at, &t, b, body->radius, body->core_lo);
-            bounds.least = minimum(bounds.least, capsule - corner);
-            bounds.most = minimum(bounds.most, capsule + corner);
-        }
-        const unsigned valid = count - i >= LANES ? 0xffffu : (1u << (count - i)) - 1;
-        if (bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
-        unsigned keep = bits(less(bounds.least, all(SWARF_HALF_WIDTH))) & valid;
-        if (!keep) continue;
-        float lows[LANES], highs[LANES], floors[LANES], ceilings[LANES];
-        store(lows, bounds.least);
-        store(highs, bounds.most);
-        store(floors, bounds.floor_least);
-        store(ceilings, pick(less(bounds.covers, all(-SWARF_HALF_WIDTH)), bounds.floor_most, all(far_away)));
-        for (; keep; keep &= keep - 1) {
-            const int lane = __builtin_ctz(keep);
-            out[kept] = at[lane];
-            bound[kept] = lows[lane];
-            floor[kept] = floors[lane];
-            if (ceilings[lane] < champion_floor) {
-                champion_floor = ceilings[lane];
-                champion = kept;
-            }
-            kept++;
-            best = minimum(best, all(highs[lane]));
-        }
+    struct shaft_bounds bounds;
+    face_block(c, at, b, t);
+    shaft_least(t, b, reach, body->radius, ball ? body->core_lo : body->z_lo, body->z_hi, &bounds);
+    shaft_most(t, b, reach, body->core_radius, body->core_lo, body->core_hi, &bounds);
+    if (ball) {
+        const float corner = sqrtf(reach * reach + b->half_z * b->half_z);
+        const lanes capsule = capsule_distance(t, b, body->radius, body->core_lo);
+        bounds.least = minimum(bounds.least, capsule - corner);
+        bounds.most = minimum(bounds.most, capsule + corner);
     }
-    if (kept > 1) {
-        /* A track that is everywhere farther than another one is anywhere does not matter; nor does, of cylinders, one
-         * whose bottom is nowhere below that of another which covers the block from side to side. */
-        const float limit = least_lane(best);
-        const int flat = body->kind == SWARF_BODY_CYLINDER;
-        size_t left = 0;
-        for (size_t i = 0; i < kept; i++) {
-            const int matters = bound[i] <= limit && !(flat && floor[i] >= champion_floor);
-            if (matters || i == champion) out[left++] = out[i];
+    if (bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
+    unsigned keep = bits(less(bounds.least, all(SWARF_HALF_WIDTH))) & valid;
+    if (!keep) return 0;
+    float lows[LANES], highs[LANES], floors[LANES], ceilings[LANES];
+    store(lows, bounds.least);
+    store(highs, bounds.most);
+    store(floors, bounds.floor_least);
+    store(ceilings, pick(less(bounds.covers, all(-SWARF_HALF_WIDTH)), bounds.floor_most, all(far_away)));
+    for (; keep; keep &= keep - 1) {
+        const int lane = __builtin_ctz(keep);
+        out[state->kept] = at[lane];
+        bound[state->kept] = lows[lane];
+        floor[state->kept] = floors[lane];
+        if (ceilings[lane] < state->champion_floor) {
+            state->champion_floor = ceilings[lane];
+            state->champion = state->kept;
         }
-        kept = left;
+        state->kept++;
+        state->best = minimum(state->best, all(highs[lane]));
     }
-    for (int i = 0; i < COLUMN_SLACK; i++) out[kept + (size_t)i] = kept ? out[0] : 0;
-    *out_count = kept;
     return 0;
+}
+
+/* A track that is everywhere farther than another one is anywhere does not matter; nor does, of cylinders, one whose
+ * bottom is nowhere below that of another which covers the block from side to side. */
+static size_t drop_dominated(const swarf_body *body, const struct culling *state, int32_t *out, const float *bound,
+                             const float *floor)
+{
+    size_t left = state->kept;
+    if (left > 1) {
+        const float limit = least_lane(state->best);
+        const int flat = body->kind == SWARF_BODY_CYLINDER;
+        left = 0;
+        for (size_t i = 0; i < state->kept; i++) {
+            const int matters = bound[i] <= limit && !(flat && floor[i] >= state->champion_floor);
+            if (matters || i == state->champion) out[left++] = out[i];
+        }
+    }
+    for (int i = 0; i < COLUMN_SLACK; i++) out[left + (size_t)i] = left ? out[0] : 0;
+    return left;
+}
+
+static unsigned cull(const swarf_body *body, const swarf_column *c, const int32_t *in, size_t count,
+                     const swarf_block *blocks, size_t block_count, int32_t *const *out, size_t *out_count)
+{
+    struct culling state[BLOCKS_AT_ONCE];
+    for (size_t b = 0; b < block_count; b++)
+        state[b] = (struct culling){.best = all(far_away), .champion = SIZE_MAX, .champion_floor = far_away};
+    unsigned covered = 0;
+    for (size_t i = 0; i < count; i += LANES) {
+        const unsigned valid = count - i >= LANES ? 0xffffu : (1u << (count - i)) - 1;
+        struct sixteen t = gather_tracks(c, in + i, body->kind == SWARF_BODY_BALL);
+        for (size_t b = 0; b < block_count; b++)
+            if (!(covered >> b & 1) && cull_sixteen(body, c, in + i, valid, &blocks[b], &t, &state[b], out[b], c->bound[b], c->floor[b]))
+                covered |= 1u << b;
+    }
+    for (size_t b = 0; b < block_count; b++)
+        if (!(covered >> b & 1)) out_count[b] = drop_dominated(body, &state[b], out[b], c->bound[b], c->floor[b]);
+    return covered;
 }
 
 /* ---- distance to one track, 16 columns x 8 voxels ---------------------------------------------------------------- */
@@ -578,28 +612,26 @@ static int cut(const swarf_body *body, const swarf_column *c, const int32_t *lis
     struct leaf_state state = {.least = all8(leaf->background), .most = all8(-leaf->background)};
     _Alignas(64) float found[128];
     int touched = 0;
-    for (int gx = 0; gx < 8; gx += 4) {
-        for (int gy = 0; gy < 8; gy += 4) {
-            const float x = leaf->x + (float)gx, y = leaf->y + (float)gy;
-            const int32_t *near = list;
-            size_t near_count = count;
-            int removed = 0;
-            if (count > FEW) {
-                const swarf_block block = {x + 1.5f, y + 1.5f, leaf->z + 3.5f, 1.5f, 3.5f};
-                removed = cull(body, c, list, count, &block, c->list[4], &near_count);
-                near = c->list[4];
-            }
-            if (removed) {
-                remove_group(leaf, &state, gx, gy);
-            } else if (near_count == 0) {
-                keep_group(leaf, &state, gx, gy);
-                continue;
-            } else {
-                distance_group(body, c, near, near_count, load(lane_x) + x, load(lane_y) + y, leaf->z, 8, found);
-                merge_group(leaf, &state, gx, gy, found);
-            }
-            touched = 1;
+    swarf_block blocks[4];
+    for (int g = 0; g < 4; g++)
+        blocks[g] = (swarf_block){leaf->x + (float)(g >> 1) * 4 + 1.5f, leaf->y + (float)(g & 1) * 4 + 1.5f,
+                                  leaf->z + 3.5f, 1.5f, 3.5f};
+    size_t counts[4] = {count, count, count, count};
+    const int each = count > FEW;
+    const unsigned removed = each ? cull(body, c, list, count, blocks, 4, &c->list[LIST_GROUPS], counts) : 0;
+    for (int g = 0; g < 4; g++) {
+        const int gx = (g >> 1) * 4, gy = (g & 1) * 4;
+        if (removed >> g & 1) {
+            remove_group(leaf, &state, gx, gy);
+        } else if (counts[g] == 0) {
+            keep_group(leaf, &state, gx, gy);
+            continue;
+        } else {
+            distance_group(body, c, each ? c->list[LIST_GROUPS + g] : list, counts[g], load(lane_x) + (leaf->x + (float)gx),
+                           load(lane_y) + (leaf->y + (float)gy), leaf->z, 8, found);
+            merge_group(leaf, &state, gx, gy, found);
         }
+        touched = 1;
     }
     if (!touched) return 0;
     memcpy(leaf->mask, state.mask, sizeof state.mask);
