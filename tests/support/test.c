@@ -78,6 +78,11 @@ uint64_t test_random_below(test_random *random, uint64_t count)
     return next(random) % count;
 }
 
+const char *test_source(void)
+{
+    return SWARF_SOURCE_DIR;
+}
+
 const char *test_shared(void)
 {
     static char path[1024];

@@ -34,6 +34,9 @@ double test_random_in(test_random *random, double lo, double hi);
 /** Uniform whole number below `count`. */
 uint64_t test_random_below(test_random *random, uint64_t count);
 
+/** Folder of the source tree. */
+const char *test_source(void);
+
 /** Folder of the shared benchmark data ("" when absent): $SWARF_SHARED or ../shared beside the checkout. */
 const char *test_shared(void);
 
