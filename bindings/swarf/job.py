@@ -21,7 +21,7 @@ class Job:
 
         {"kind": "box", "lo": (x, y, z), "hi": (x, y, z)}
         {"kind": "cylinder", "base": (x, y, z), "axis": (x, y, z), "radius": r}   axis: from base to the other end
-        {"kind": "mesh", "mesh": Mesh}
+        {"kind": "mesh", "mesh": Mesh}                              "path": where it came from, for errors
         {"kind": "vdb", "path": path}
     """
 

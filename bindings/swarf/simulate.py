@@ -8,7 +8,7 @@ import time
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Sequence
 
-from ._native import Comparison, Mesh, Simulation, Stock, compare_volume
+from ._native import Comparison, GeometryError, Mesh, Simulation, Stock, compare_volume
 from .job import Job
 
 #: Voxels along the longest edge of the stock where nobody says how fine: fast on any machine, and fine enough to see.
@@ -104,7 +104,10 @@ def make_stock(
     if kind == "cylinder":
         return Stock.cylinder(description["base"], description["axis"], description["radius"], voxel)
     if kind == "mesh":
-        return Stock.from_mesh(description["mesh"], voxel, progress=progress)
+        try:
+            return Stock.from_mesh(description["mesh"], voxel, progress=progress)
+        except GeometryError as error:  # which of the job's meshes, and of which file
+            raise GeometryError(f"{description.get('path', 'stock')}: {error}") from None
     raise ValueError(f"stock of kind {kind!r} is not known: box, cylinder, mesh, vdb")
 
 

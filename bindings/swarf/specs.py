@@ -44,7 +44,7 @@ def stock(spec: str) -> dict[str, Any]:
         return {"kind": "cylinder", "base": tuple(values[:3]), "axis": axis, "radius": values[3]}
     suffix = os.path.splitext(spec)[1].lower()
     if suffix in MESH_SUFFIXES:
-        return {"kind": "mesh", "mesh": Mesh.read(spec)}
+        return {"kind": "mesh", "mesh": Mesh.read(spec), "path": spec}
     if suffix in STOCK_SUFFIXES:
         return {"kind": "vdb", "path": spec}
     raise ValueError(f"stock {spec!r}: wanted {STOCK_HELP} ({', '.join(MESH_SUFFIXES + STOCK_SUFFIXES)})")

@@ -126,17 +126,20 @@ def test_impossible_sizes(refused, program, size, says):
         ("none.vdb", ["none.vdb"]),
         ("cut.stl", ["cut.stl"]),
         ("cut.vdb", ["cut.vdb"]),
+        ("open.obj", ["open.obj", "not closed"]),
     ],
 )
 def test_impossible_stocks(refused, program, tmp_path, stock, says):
     (tmp_path / "cut.stl").write_bytes(b"\0" * 80 + b"\5\0\0\0" + b"\0" * 99)
     (tmp_path / "cut.vdb").write_bytes(b" BDV\0\0\0\0" + b"\0" * 20)
+    (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     refused(program, "--stock", stock, "--tool", TOOL, says=says)
 
 
 @pytest.mark.parametrize(
-    "tool", ["flat:d=3,l=18", "x=flat:d=3,l=18", "-1=flat:d=3,l=18", "1=cube:d=1", "1=", "1=flat:d=0,l=1", "1=form:0/0:5/0:2/5:5/3", "1=flat:d=1e9,l=5",
-             "99999999999=flat:d=3,l=18"]
+    "tool",
+    ["flat:d=3,l=18", "x=flat:d=3,l=18", "-1=flat:d=3,l=18", "1=cube:d=1", "1=", "1=flat:d=0,l=1",
+     "1=form:0/0:5/0:2/5:5/3", "1=flat:d=1e9,l=5", "99999999999=flat:d=3,l=18"],
 )
 def test_impossible_tools(refused, program, tool):
     refused(program, "--stock", STOCK, f"--tool={tool}", says=["tool"])
