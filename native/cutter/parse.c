@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Cutters from text: "bull:d=6,r=1,l=20", "form:0/0:3/0:3/4/0.4:2/5:0/5". */
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/status.h"
 #include "cutter/shape.h"
 
@@ -32,9 +33,7 @@ static swarf_status parse_dimension(const char *text, const char *name, const ch
         double *value = (double *)((char *)dimensions + dimension->offset);
         if (!isnan(*value))
             return swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': %s is given twice", text, dimension->letters);
-        char *end;
-        *value = strtod(equals + 1, &end);
-        if (end == equals + 1 || end != word + length || !isfinite(*value))
+        if (swarf_number_read(equals + 1, word + length, value) != word + length)
             return swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': '%.*s' does not end in a number", text, (int)length,
                               word);
         return SWARF_OK;
@@ -52,17 +51,14 @@ static swarf_status parse_form(const char *text, const char *words, swarf_cutter
         if (status != SWARF_OK) break;
         double value[3] = {0};
         int given = 0;
-        char *end = (char *)words;
-        for (; given < 3; given++) {
-            const char *start = given ? end + 1 : words;
-            value[given] = strtod(start, &end);
-            if (end == start) break;
-            if (*end != '/') {
-                given++;
-                break;
-            }
+        const char *const stop = words + strlen(words), *end = words;
+        while (given < 3) {
+            end = swarf_number_read(given ? end + 1 : words, stop, &value[given]);
+            if (!end) break;
+            given++;
+            if (*end != '/') break;
         }
-        if (given < 2 || (*end && *end != ':') || !isfinite(value[0]) || !isfinite(value[1]) || !isfinite(value[2])) {
+        if (given < 2 || !end || (*end && *end != ':')) {
             status = swarf_fail(SWARF_ERROR_FORMAT, "cutter '%s': node %zu is not of the form r/z or r/z/bulge", text,
                                 count);
             break;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "mesh/text.h"
 
+#include "base/number.h"
 #include "base/status.h"
 
 #include <float.h>
@@ -47,49 +48,10 @@ int swarf_word_is(swarf_word word, const char *wanted)
 
 int swarf_word_number(swarf_word word, double *out)
 {
-    const char *p = word.at, *end = p + word.length;
-    int negative = 0, digits = 0, scale = 0;
-    uint64_t mantissa = 0;
-    if (p < end && (*p == '-' || *p == '+')) negative = *p++ == '-';
-    for (int after_point = 0; p < end; p++) {
-        if (*p == '.' && !after_point) {
-            after_point = 1;
-        } else if (*p >= '0' && *p <= '9') {
-            digits++;
-            /* 18 digits are more than a double holds; later ones only move the point */
-            if (mantissa < UINT64_C(100000000000000000)) {
-                mantissa = 10 * mantissa + (uint64_t)(*p - '0');
-                scale -= after_point;
-            } else {
-                scale += !after_point;
-            }
-        } else {
-            break;
-        }
-    }
-    if (!digits) return 0;
-    if (p < end && (*p == 'e' || *p == 'E')) {
-        int minus = 0, exponent = 0;
-        if (++p < end && (*p == '-' || *p == '+')) minus = *p++ == '-';
-        if (p == end) return 0;
-        for (; p < end && *p >= '0' && *p <= '9'; p++)
-            if (exponent < 10000) exponent = 10 * exponent + (*p - '0');
-        scale += minus ? -exponent : exponent;
-    }
-    if (p != end) return 0;
-    double value = (double)mantissa;
-    if (mantissa == 0) scale = 0;
-    /* in steps that neither overflow nor lose a small mantissa */
-    for (; scale > 22; scale -= 22) {
-        if (value > FLT_MAX) return 0;
-        value *= 1e22;
-    }
-    for (; scale < -22 && value > 0; scale += 22) value /= 1e22;
-    static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                   1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    if (value > 0) value = scale < 0 ? value / power[-scale] : value * power[scale];
-    if (value > FLT_MAX) return 0;
-    *out = negative ? -value : value;
+    double value;
+    const char *end = swarf_number_read(word.at, word.at + word.length, &value);
+    if (!end || end != word.at + word.length || fabs(value) > FLT_MAX) return 0;
+    *out = value;
     return 1;
 }
 
