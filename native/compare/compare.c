@@ -12,6 +12,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Of the design only the half voxel about its surface counts; this is the narrowest band that can be had. */
+static const double half_width = 2;
+
 /* a less b, node by node of a. Both trees lie on the same voxels; b's nodes start `shift` nodes after a's. */
 struct difference {
     const swarf_tree *a, *b;
@@ -99,7 +102,7 @@ static swarf_status compare(const swarf_stock *stock, const swarf_shells *design
     int32_t count[3];
     SWARF_TRY(swarf_stock_layout(&design->box, &options, origin, count)); /* for its check of the memory only */
     swarf_tree *tree = NULL;
-    SWARF_TRY(swarf_tree_create_shells(design, layout->voxel, layout->origin, progress, 0, 0.8, &tree));
+    SWARF_TRY(swarf_tree_create_shells(design, layout->voxel, layout->origin, half_width, progress, 0, 0.8, &tree));
     swarf_comparison result = {.design_mm3 = design->volume_mm3};
     swarf_status status = swarf_measure_volume(stock, &result.stock_mm3);
     if (status == SWARF_OK) status = measure_difference(stock->tree, tree, progress, 0.8, 0.9, &result.excess_mm3);

@@ -10,10 +10,12 @@
 extern "C" {
 #endif
 
-/** A tree whose voxel centres lie at whole numbers of `voxel` from `origin` (mm). `from`..`to` is this call's part of
- *  the progress. */
+/** A tree whose voxel centres lie at whole numbers of `voxel` from `origin` (mm), with values up to `half_width` voxels
+ *  from the surface, at least 2; beyond 2 each more voxel costs as much again. `from`..`to` is this call's part of the
+ *  progress. */
 swarf_status swarf_tree_create_shells(const swarf_shells *shells, double voxel, const double origin[3],
-                                      const swarf_progress *progress, double from, double to, swarf_tree **out);
+                                      double half_width, const swarf_progress *progress, double from, double to,
+                                      swarf_tree **out);
 
 #ifdef __cplusplus
 }
