@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Sign and first-order value of swarf_sweep_distance() against the oracle, for every cutter and motion.
  *
- * 10,000 points for each pair, 100,000 with SWARF_TEST_FULL=1, any number of thousands with SWARF_TEST_POINTS=1000.
+ * 2,000 points for each pair, 100,000 with SWARF_TEST_FULL=1, any number of thousands with SWARF_TEST_POINTS=1000.
  * Arguments: number of a cutter, number of a motion (all without). Cases are independent and shared out to threads.
  */
 #include <math.h>
@@ -45,6 +45,16 @@ static void note(result *r, int most, const char *what, double value, double wan
     fclose(stream);
 }
 
+/* Hollow arcs of a profile are followed by chords, so that no motion of theirs is exact. */
+static int is_hollow(const swarf_cutter *cutter)
+{
+    swarf_cutter_part part;
+    for (size_t i = 0; i < swarf_cutter_part_count(cutter) && swarf_cutter_part_get(cutter, i, &part) == SWARF_OK; i++)
+        for (size_t k = 0; k < part.node_count; k++)
+            if (part.nodes[k].bulge < 0) return 1;
+    return 0;
+}
+
 static void run_case(int number, result *r)
 {
     const char *cutter_name, *motion_name;
@@ -52,12 +62,14 @@ static void run_case(int number, result *r)
     test_random random = {seed + 1000003u * (uint64_t)number};
     swarf_cutter *cutter = case_cutter(number / CASE_MOTIONS, &cutter_name);
     const oracle_body body = oracle_body_of(cutter, SWARF_PART_FLUTES);
+    const int hollow = is_hollow(cutter);
     const double voxels[] = {0.1, 0.05, 0.2};
     double point[CHUNK][3];
     float value[CHUNK];
     for (size_t chunk = 0; chunk * CHUNK < points_per_case; chunk++) {
         const swarf_path path = case_motion(number % CASE_MOTIONS, &random, &motion_name, &curved);
-        const double voxel = voxels[chunk % 3], bound = (curved ? SWARF_SWEEP_BOUND : exact_bound) * voxel;
+        const double voxel = voxels[chunk % 3];
+        const double bound = (curved || hollow ? SWARF_SWEEP_BOUND : exact_bound) * voxel;
         for (int i = 0; i < CHUNK; i++) oracle_random_point(&body, &path, 3 * voxel, &random, point[i]);
         if (swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, voxel, point[0], CHUNK, value) != SWARF_OK) {
             r->error = "swarf_sweep_distance failed";
@@ -104,7 +116,7 @@ static void *work(void *unused)
 int main(int count, char **argument)
 {
     const char *full = getenv("SWARF_TEST_FULL");
-    points_per_case = full && strcmp(full, "0") != 0 ? 100000 : 10000;
+    points_per_case = full && strcmp(full, "0") != 0 ? 100000 : 2000;
     if (getenv("SWARF_TEST_POINTS")) points_per_case = (strtoul(getenv("SWARF_TEST_POINTS"), NULL, 10) / 1000) * 1000;
     seed = test_random_begin(20240611).state;
     if (count > 1) only_cutter = atoi(argument[1]);

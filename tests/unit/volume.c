@@ -126,7 +126,7 @@ static void check_removed(const char *what, const swarf_cutter *cutter, const sw
     double before = 0, after = 0;
     const double block = (box->hi[0] - box->lo[0]) * (box->hi[1] - box->lo[1]) * (box->hi[2] - box->lo[2]);
     CHECK_OK(swarf_stock_volume(stock, &before));
-    CHECK_NEAR(before, block, 1e-5 * block);
+    CHECK_NEAR(before, block, volume_bound * block);
     CHECK_OK(swarf_stock_cut(stock, cutter, path, 1, NULL));
     CHECK_OK(swarf_stock_volume(stock, &after));
     if (!CHECK_NEAR(before - after, exact, volume_bound * exact))

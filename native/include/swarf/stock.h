@@ -51,7 +51,8 @@ SWARF_API void swarf_stock_destroy(swarf_stock *stock);
 SWARF_API double swarf_stock_voxel(const swarf_stock *stock);
 /** Bounding box of the material in mm (to half a voxel); empty (lo > hi) when nothing is left. */
 SWARF_API swarf_status swarf_stock_box(swarf_stock *stock, swarf_box *out);
-/** Volume in mm3. */
+/** Volume in mm3, to the second order of the voxel h: besides 1e-4 of it, right-angled convex edges add up to h^2 / 4
+ *  per mm of their length, and concave ones take as much away. */
 SWARF_API swarf_status swarf_stock_volume(swarf_stock *stock, double *out);
 /** 64-bit hash of all values, the same for the same content whatever the threads or kernels. */
 SWARF_API swarf_status swarf_stock_hash(swarf_stock *stock, uint64_t *out);
