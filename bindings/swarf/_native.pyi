@@ -227,7 +227,7 @@ class Stock:
         perspective: bool = False,
         progress: Progress = None,
     ) -> Optional[bytes]:
-        """A shaded picture with samples x samples rays per pixel. With a path it is written as PNG and None is
+        """A shaded picture, samples x samples rays per pixel at edges. With a path it is written as PNG and None is
         returned; else RGBA bytes, 4 x width x height, rows from the top."""
     def cast(self, origins: Table, directions: Table) -> tuple[memoryview, memoryview]:
         """First hits of rays, (n, 3) tables in mm -> (distances: float64 view, in lengths of the direction, inf for

@@ -55,7 +55,7 @@ typedef struct swarf_picture_options {
     size_t size;
     int32_t width; /**< pixels, 1 .. 16384 */
     int32_t height;
-    int32_t samples;     /**< rays per pixel edge: 1, 2, 3 or 4 (n * n rays per pixel) */
+    int32_t samples;     /**< 1, 2, 3 or 4: n * n rays for pixels where more than one face shows, else one */
     float colour[3];     /**< linear 0..1 base colour of the material */
     float background[4]; /**< RGBA at the bottom of the picture */
     float background_top[4];
