@@ -193,6 +193,8 @@ def main():
     path = os.path.abspath(os.environ.get("SWARF_EXAMPLE_OUT") or os.path.join(HERE, "out", "job.FCStd"))
     os.makedirs(os.path.dirname(path), exist_ok=True)
     document, _ = make()
+    if os.path.exists(path):
+        os.remove(path)  # or FreeCAD keeps the old one beside it as job.FCStd1
     document.saveAs(path)
     print("\nwritten:", path)
 
