@@ -8,7 +8,8 @@ _Static_assert(sizeof view_names / sizeof view_names[0] == SWARF_VIEW_COUNT, "on
 const char stock_picture_doc[] =
     "picture($self, path=None, width=1024, height=768, *, view='isometric', samples=3, perspective=False, "
     "progress=None)\n--\n\n"
-    "A shaded picture, samples x samples rays per pixel at edges, view isometric, top, bottom, front, rear, left or right.\n"
+    "A shaded picture, samples x samples rays per pixel at edges; view isometric, top, bottom, front, rear, left or\n"
+    "right.\n"
     "With a path it is written as PNG and None is returned; else RGBA bytes, 4 x width x height, rows from the top.";
 
 /** Scene, camera, pixels; runs without the GIL. */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Picture: camera rays in packets, Gooch shading, antialiasing.
  *
- * Tiles of 32 x 32 pixels go to all cores. A tile and the pixels around it are traced with one ray per pixel, in packets
- * of 4 x 4 neighbours. Where a pixel and its eight neighbours see one smooth face, or all nothing, this is the colour;
- * the others (edges, steps, silhouettes) get n x n rays, a packet per pixel. Each pixel belongs to one tile and sums its
- * samples in a fixed order, so the picture is the same for any number of threads. Colours are summed premultiplied in
- * linear light and end as sRGB.
+ * Tiles of 32 x 32 pixels go to all cores. A tile and the pixels around it are traced with one ray per pixel, in
+ * packets of 4 x 4 neighbours. Where a pixel and its eight neighbours see one smooth face, or all nothing, this is the
+ * colour; the others (edges, steps, silhouettes) get n x n rays, a packet per pixel. Each pixel belongs to one tile and
+ * sums its samples in a fixed order, so the picture is the same for any number of threads. Colours are summed
+ * premultiplied in linear light and end as sRGB.
  */
 #include "base/parallel.h"
 #include "base/status.h"
