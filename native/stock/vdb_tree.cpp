@@ -40,6 +40,8 @@ swarf_vdb_node *make_node(openvdb::FloatTree &tree, const Coord &at)
 {
     if (auto *node = tree.probeNode<swarf_vdb_node>(at)) return node;
     const float value = tree.getValue(at);
+    /* Its place in the root first: OpenVDB would lose the node if there is no memory left for the place. */
+    if (tree.getValueDepth(at) < 0) tree.root().addTile(at, value, false);
     tree.touchLeaf(at);
     auto *node = tree.probeNode<swarf_vdb_node>(at);
     node->addTile(swarf_vdb_node::coordToOffset(at), value, false);
@@ -164,6 +166,8 @@ extern "C" swarf_status swarf_tree_copy(const swarf_tree *tree, swarf_tree **out
 
 extern "C" void swarf_tree_destroy(swarf_tree *tree)
 {
+    /* Node by node: ~Tree() makes lists of them first, and ends the program when there is no memory for the lists. */
+    if (tree && tree->grid) tree->grid->tree().root().clear();
     delete tree;
 }
 

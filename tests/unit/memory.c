@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Memory that runs out: everything once through, with the k-th allocation failing, for k = 1, 2, ... until none fails.
+ *
+ * malloc() and its kin and operator new are defined here and so come before the libraries'. They count and refuse what
+ * libswarf asks for (the caller is known by its address), and keep those blocks in a table while they live, so that
+ * what is left behind shows. What TBB and OpenVDB ask for from within their own libraries is let through. */
+#define _GNU_SOURCE /* dl_iterate_phdr() */
+#include <link.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "test.h"
+
+/* glibc's own, under the names that cannot be taken from it. */
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *block, size_t size);
+void __libc_free(void *block);
+/* std::__throw_bad_alloc(), operator new(size_t), new[](size_t): their names for the linker (Itanium C++ ABI). */
+_Noreturn void _ZSt17__throw_bad_allocv(void);
+void *_Znwm(size_t size);
+void *_Znam(size_t size);
+
+/* The code of libswarf. */
+static uintptr_t code_from, code_to;
+
+static atomic_bool watching;
+static atomic_size_t asked;  /* since the watch began */
+static atomic_size_t refuse; /* number of the allocation that fails, 0: none */
+static atomic_bool refused;
+
+/* Living blocks of the watch: open addressing, guarded by a spin lock. `gone` marks places that were in use. */
+enum { PLACES = 1 << 14 };
+static void *living[PLACES];
+static char gone;
+static atomic_flag lock = ATOMIC_FLAG_INIT;
+
+static int find_code(struct dl_phdr_info *info, size_t size, void *unused)
+{
+    (void)size, (void)unused;
+    if (!strstr(info->dlpi_name, "/libswarf.so")) return 0;
+    for (int i = 0; i < info->dlpi_phnum; i++) {
+        const ElfW(Phdr) *part = &info->dlpi_phdr[i];
+        if (part->p_type != PT_LOAD || !(part->p_flags & PF_X)) continue;
+        code_from = info->dlpi_addr + part->p_vaddr;
+        code_to = code_from + part->p_memsz;
+    }
+    return 1;
+}
+
+static int counts(const void *caller)
+{
+    return atomic_load(&watching) && (uintptr_t)caller >= code_from && (uintptr_t)caller < code_to;
+}
+
+static int refuses(void)
+{
+    if (atomic_fetch_add(&asked, 1) + 1 != atomic_load(&refuse)) return 0;
+    atomic_store(&refused, 1);
+    return 1;
+}
+
+static void **place_of(const void *block, int free_one)
+{
+    size_t at = ((uintptr_t)block >> 4) * 0x9E3779B97F4A7C15u >> 50;
+    for (int i = 0; i < PLACES; i++, at = (at + 1) % PLACES) {
+        if (living[at] == block || (free_one && living[at] == &gone)) return &living[at];
+        if (!living[at]) return free_one ? &living[at] : NULL;
+    }
+    return NULL;
+}
+
+static void remember(void *block)
+{
+    if (!block) return;
+    while (atomic_flag_test_and_set(&lock)) continue;
+    void **place = place_of(block, 1);
+    if (place) *place = block;
+    atomic_flag_clear(&lock);
+}
+
+/* 1 if it was remembered. */
+static int forget(const void *block)
+{
+    if (!block || !atomic_load(&watching)) return 0;
+    while (atomic_flag_test_and_set(&lock)) continue;
+    void **place = place_of(block, 0);
+    if (place) *place = &gone;
+    atomic_flag_clear(&lock);
+    return place != NULL;
+}
+
+void *malloc(size_t size)
+{
+    const int watch = counts(__builtin_return_address(0));
+    if (watch && refuses()) return NULL;
+    void *block = __libc_malloc(size);
+    if (watch) remember(block);
+    return block;
+}
+
+void *calloc(size_t count, size_t size)
+{
+    const int watch = counts(__builtin_return_address(0));
+    if (watch && refuses()) return NULL;
+    void *block = __libc_calloc(count, size);
+    if (watch) remember(block);
+    return block;
+}
+
+void *realloc(void *old, size_t size)
+{
+    const int watch = counts(__builtin_return_address(0));
+    if (watch && refuses()) return NULL;
+    const int known = forget(old); /* first: another thread may get the address as soon as it is free */
+    void *block = __libc_realloc(old, size);
+    if (known || watch) remember(block ? block : old);
+    return block;
+}
+
+static void *make(size_t size, int watch)
+{
+    if (watch && refuses()) _ZSt17__throw_bad_allocv();
+    void *block = __libc_malloc(size ? size : 1);
+    if (!block) _ZSt17__throw_bad_allocv();
+    if (watch) remember(block);
+    return block;
+}
+
+void *_Znwm(size_t size)
+{
+    return make(size, counts(__builtin_return_address(0)));
+}
+
+void *_Znam(size_t size)
+{
+    return make(size, counts(__builtin_return_address(0)));
+}
+
+void free(void *block)
+{
+    forget(block);
+    __libc_free(block);
+}
+
+/* A pocket's corner: lines on the level and on a slope, an arc, a plunge. */
+static const char program_text[] = "G21 G90 G17\nT1 M6\nG0 X1 Y1 Z12\nG1 Z7 F300\nX7 Z6\nG3 X9 Y3 R2\nG1 Y9\nM2\n";
+
+struct things {
+    swarf_program *program;
+    swarf_cutter *cutter;
+    swarf_stock *stock;
+    swarf_simulation *simulation;
+    swarf_mesh *mesh, *welded;
+    double volume;
+};
+
+static swarf_status read_program(struct things *t)
+{
+    return swarf_gcode_read(program_text, strlen(program_text), "pocket.nc", NULL, NULL, &t->program);
+}
+
+static swarf_status make_cutter(struct things *t)
+{
+    return swarf_cutter_parse("bull:d=4,r=1,l=6,sd=3,sl=10", &t->cutter);
+}
+
+static swarf_status make_stock(struct things *t)
+{
+    const swarf_box box = {{0, 0, 0}, {10, 10, 10}};
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = 0.5;
+    return swarf_stock_create_box(&box, &options, &t->stock);
+}
+
+static swarf_status simulate(struct things *t)
+{
+    const swarf_tool tool = {.number = 1, .cutter = t->cutter};
+    return swarf_stock_simulate(t->stock, t->program, 0, swarf_program_move_count(t->program), &tool, 1, NULL, NULL,
+                                &t->simulation);
+}
+
+static swarf_status measure(struct things *t)
+{
+    return swarf_stock_volume(t->stock, &t->volume);
+}
+
+static swarf_status make_mesh(struct things *t)
+{
+    return swarf_mesh_create_stock(t->stock, 0, NULL, &t->mesh);
+}
+
+static swarf_status weld_mesh(struct things *t)
+{
+    const swarf_triangles triangles = swarf_mesh_triangles(t->mesh);
+    return swarf_mesh_create(&triangles, &t->welded);
+}
+
+typedef swarf_status (*step_fn)(struct things *t);
+static const struct step {
+    const char *name;
+    step_fn fn;
+} steps[] = {
+    {"read the program", read_program},
+    {"make the cutter", make_cutter},
+    {"make the stock", make_stock},
+    {"simulate", simulate},
+    {"measure", measure},
+    {"make the mesh", make_mesh},
+    {"weld the mesh", weld_mesh},
+};
+
+static void release(struct things *t)
+{
+    swarf_mesh_release(t->welded);
+    swarf_mesh_release(t->mesh);
+    swarf_simulation_destroy(t->simulation);
+    swarf_stock_destroy(t->stock);
+    swarf_cutter_release(t->cutter);
+    swarf_program_release(t->program);
+}
+
+/* One go through everything. */
+struct round {
+    size_t fail;     /* the number of the allocation that fails, 0: none */
+    double expected; /* volume at the end, 0: not known yet */
+    size_t asked;
+    double volume;
+};
+
+/* A step that comes back without memory is asked again: then it succeeds, and the result is that of a round in which
+ * nothing failed. */
+static void *play_round(void *argument)
+{
+    struct round *round = argument;
+    struct things t = {0};
+    atomic_store(&refused, 0);
+    atomic_store(&asked, 0);
+    atomic_store(&refuse, round->fail);
+    atomic_store(&watching, 1);
+    int ok = 1;
+    for (size_t i = 0; i < sizeof steps / sizeof *steps && ok; i++) {
+        const int before = atomic_load(&refused);
+        swarf_status status = steps[i].fn(&t);
+        if (status == SWARF_ERROR_MEMORY && !before && atomic_load(&refused)) status = steps[i].fn(&t);
+        ok = status == SWARF_OK;
+        if (!ok) printf("allocation %zu, %s: %s\n", round->fail, steps[i].name, swarf_error_last());
+    }
+    release(&t);
+    round->asked = atomic_load(&asked);
+    round->volume = t.volume;
+    CHECK(ok);
+    if (ok && round->expected > 0) CHECK(t.volume == round->expected);
+    return NULL;
+}
+
+/* In a thread of its own: what the library keeps for a thread goes with it. */
+static void run_round(struct round *round)
+{
+    pthread_t thread;
+    memset(living, 0, sizeof living);
+    if (!CHECK(pthread_create(&thread, NULL, play_round, round) == 0)) return;
+    pthread_join(thread, NULL);
+    atomic_store(&watching, 0);
+    if (round->fail == 0) return; /* what is set up once stays */
+    size_t left = 0;
+    for (int i = 0; i < PLACES; i++) left += living[i] && living[i] != &gone;
+    if (left) printf("allocation %zu: %zu blocks are left\n", round->fail, left);
+    CHECK(left == 0);
+}
+
+int main(void)
+{
+    CHECK(dl_iterate_phdr(find_code, NULL) == 1);
+    CHECK_OK(swarf_threads_set(1)); /* the same allocation is the k-th in each round */
+    struct round first = {0}, second = {0};
+    run_round(&first);
+    run_round(&second);
+    CHECK(second.volume > 500 && second.volume < 1000);
+    CHECK(second.asked > 100);
+    for (size_t k = 1; k <= second.asked; k++) {
+        struct round round = {.fail = k, .expected = second.volume};
+        run_round(&round);
+        CHECK(atomic_load(&refused));
+    }
+    printf("%zu allocations, each failed once\n", second.asked);
+    return test_end();
+}
