@@ -138,6 +138,7 @@ extern "C" swarf_status swarf_parallel_for(size_t count, swarf_work_fn work, voi
         run state{work, context, progress && progress->fn ? progress : nullptr, from, to, count};
         const int threads = swarf_threads();
         if (threads == 1 || count == 1) {
+            current_slot = 0;
             for (size_t index = 0; index < count && state.failed.load() == SWARF_OK; index++) state.one(index);
         } else {
             HAPPENS_BEFORE(&state.began);

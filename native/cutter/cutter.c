@@ -10,6 +10,9 @@
 /* Nodes closer than this (mm) are one: far below any voxel, far above rounding in CAD files. */
 static const double same = 1e-7;
 
+/* Profiles come from CAD outlines and hands; preparing one takes time by the square of its nodes. */
+enum { MOST_NODES = 4096 };
+
 static const char *part_name(swarf_part_kind kind)
 {
     return kind == SWARF_PART_FLUTES ? "flutes" : kind == SWARF_PART_SHANK ? "shank" : "holder";
@@ -61,6 +64,9 @@ static swarf_status copy_part(const swarf_cutter_part *part, swarf_cutter_part *
     const char *name = part_name(part->kind);
     SWARF_REQUIRE(part->kind <= SWARF_PART_HOLDER, "cutter: part kind %d does not exist", (int)part->kind);
     SWARF_REQUIRE(part->nodes || part->node_count == 0, "cutter: the nodes of the %s are missing", name);
+    if (part->node_count > MOST_NODES)
+        return swarf_fail(SWARF_ERROR_GEOMETRY, "cutter: the profile of the %s has %zu nodes; at most %d are taken",
+                          name, part->node_count, MOST_NODES);
     if (part->node_count < 2) return swarf_fail(SWARF_ERROR_GEOMETRY, "cutter: the profile of the %s is empty", name);
     swarf_profile_node *nodes = malloc((part->node_count + 2) * sizeof *nodes);
     if (!nodes) return swarf_fail(SWARF_ERROR_MEMORY, "cutter: out of memory");
@@ -234,17 +240,27 @@ void swarf_cutter_extent(const swarf_cutter *cutter, swarf_part_kind kind, doubl
     *z_hi = none ? 0 : extent[1];
 }
 
-static void see_radius(void *context, const swarf_profile_piece *piece)
-{
-    double *at = context; /* height, greatest radius so far */
-    if (at[0] >= piece->z0 - same && at[0] <= piece->z1 + same) at[1] = fmax(at[1], radius_at(piece, at[0]));
-}
-
+/* Nodes only climb, so that the pieces at a height lie together and are found by bisection. */
 double swarf_cutter_radius_at(const swarf_cutter *cutter, swarf_part_kind kind, double z)
 {
-    double at[2] = {z, -1};
-    for_pieces(cutter, kind, see_radius, at);
-    return at[1];
+    double most = -1;
+    for (size_t p = 0; cutter && p < cutter->part_count; p++) {
+        const swarf_cutter_part *part = &cutter->parts[p];
+        if (part->kind != kind) continue;
+        size_t lo = 0, hi = part->node_count - 1; /* first node at or above z, or the last one */
+        while (lo < hi) {
+            const size_t middle = (lo + hi) / 2;
+            if (part->nodes[middle].z < z - same)
+                lo = middle + 1;
+            else
+                hi = middle;
+        }
+        for (size_t i = lo ? lo - 1 : 0; i + 1 < part->node_count && part->nodes[i].z <= z + same; i++) {
+            const swarf_profile_piece piece = swarf_profile_piece_get(&part->nodes[i], &part->nodes[i + 1]);
+            if (z <= piece.z1 + same) most = fmax(most, radius_at(&piece, z));
+        }
+    }
+    return most;
 }
 
 static void see_volume(void *context, const swarf_profile_piece *piece)

@@ -121,11 +121,15 @@ static double first_root(const double c[4], double length)
     }
     end[ends++] = length;
 
+    /* A surface through voxel centres ends many cells in a value of about 0. Rounding must not let the ray slip between
+     * the cell above, where it seems just outside, and the one below, which nothing crosses. */
+    const double slack = 1e-9 * (fabs(c[0]) + (fabs(c[1]) + (fabs(c[2]) + fabs(c[3]) * length) * length) * length);
     double lo = 0, f_lo = c[0];
     for (int interval = 0; interval < ends; interval++) {
         double hi = end[interval];
         const double f_hi = cubic(c, hi);
         if (!(f_hi < 0)) {
+            if (hi == length && f_hi <= slack && f_hi < f_lo) return hi;
             lo = hi;
             f_lo = f_hi;
             continue;

@@ -18,7 +18,7 @@
 
 enum { TILE = 32, MARGIN_TILE = TILE + 2, PACKET_EDGE = 4, PIXELS_MAX = 16384, SAMPLES_MAX = 4 };
 
-_Static_assert(SAMPLES_MAX * SAMPLES_MAX <= SWARF_PACKET, "the samples of a pixel are one packet");
+_Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a pixel are one packet");
 
 /* One face: neighbours' normals differ by at most 2.5 degrees, and each lies in the plane of the other to 1 in 20 of
  * their distance, so that steps of more than 1/20 pixel show. Larger values save rays and leave jagged edges. */
@@ -85,7 +85,7 @@ typedef struct sight {
 /* Rays through samples `at` (x, y) of a picture with n samples per pixel edge. */
 static swarf_status look(const picture *p, int32_t n, const int32_t at[][2], unsigned count, sight out[])
 {
-    double origin[3 * SWARF_PACKET], direction[3 * SWARF_PACKET], distance[SWARF_PACKET];
+    double origin[3 * SWARF_PACKET] = {0}, direction[3 * SWARF_PACKET] = {0}, distance[SWARF_PACKET];
     float normal[3 * SWARF_PACKET], rise[SWARF_PACKET];
     for (unsigned ray = 0; ray < count; ray++) {
         const double u = (at[ray][0] + 0.5) / (p->options->width * n);

@@ -4,8 +4,10 @@
 #include "base/status.h"
 #include "swarf/render.h"
 
+#include <errno.h>
 #include <png.h>
 #include <stdio.h>
+#include <string.h>
 
 static void keep_error(png_structp png, png_const_charp text)
 {
@@ -48,9 +50,12 @@ swarf_status swarf_picture_write(const char *path, const uint8_t *rgba, int32_t 
         swarf_file_abandon(&writer);
         return swarf_fail(SWARF_ERROR_MEMORY, "%s: out of memory for libpng", path);
     }
+    errno = 0;
     const int done = encode(png, info, writer.stream, rgba, width, height);
+    const char *const reason = errno ? strerror(errno) : text; /* the system's word says more than libpng's */
     png_destroy_write_struct(&png, &info);
     if (done) return swarf_file_commit(&writer);
+    const swarf_status status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", path, reason);
     swarf_file_abandon(&writer);
-    return swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", path, text);
+    return status;
 }

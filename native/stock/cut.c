@@ -31,6 +31,7 @@ struct cut_work {
     const int32_t *numbers;
     int32_t columns_y;
     swarf_column *scratch; /* one per thread */
+    int scratch_count;
 };
 
 /* Place of a leaf, by its coordinates in leaves. */
@@ -122,20 +123,19 @@ static swarf_status cut_cube(const struct cut_work *work, const swarf_column *co
     }
     const unsigned covered = work->kernel->cull(work->body, column, list, count, blocks, used, kept, left);
     for (size_t i = 0; i < used; i++) {
-        if (covered >> i & 1) remove_cube(work, places[i][0], places[i][1], places[i][2], next);
-        else if (left[i]) SWARF_TRY(cut_cube(work, column, kept[i], left[i], places[i], next));
+        if (covered >> i & 1)
+            remove_cube(work, places[i][0], places[i][1], places[i][2], next);
+        else if (left[i])
+            SWARF_TRY(cut_cube(work, column, kept[i], left[i], places[i], next));
     }
     return SWARF_OK;
 }
 
-static swarf_status cut_column(void *context, size_t index)
+static swarf_status cut_column_with(const struct cut_work *work, swarf_column *column, int32_t number)
 {
-    const struct cut_work *work = context;
-    const int32_t number = work->columns[index];
     const int32_t x = number / work->columns_y, y = number % work->columns_y;
     const int32_t *numbers = work->numbers + work->starts[number];
     const size_t count = (size_t)(work->starts[number + 1] - work->starts[number]);
-    swarf_column *column = &work->scratch[swarf_parallel_slot()];
     const double middle[3] = {x * COLUMN + 15.5, y * COLUMN + 15.5, 0.5 * SWARF_NODE_DIM * work->layout->count[2]};
     SWARF_TRY(swarf_column_fill(column, middle, work->tracks, numbers, count));
     double lo = INFINITY, hi = -INFINITY;
@@ -158,6 +158,19 @@ static swarf_status cut_column(void *context, size_t index)
             SWARF_TRY(cut_cube(work, column, kept, left, at, COLUMN_LEAVES));
     }
     return SWARF_OK;
+}
+
+static swarf_status cut_column(void *context, size_t index)
+{
+    const struct cut_work *work = context;
+    const int32_t number = work->columns[index];
+    /* the number of threads may have been raised since the scratch was made */
+    const int slot = swarf_parallel_slot();
+    if (slot < work->scratch_count) return cut_column_with(work, &work->scratch[slot], number);
+    swarf_column own = {.room = 0};
+    const swarf_status status = cut_column_with(work, &own, number);
+    swarf_column_free(&own);
+    return status;
 }
 
 /* Call `see` for every column that the track may reach: those in its box, and of a long slanting line those near it. */
@@ -202,6 +215,7 @@ static void for_columns(const swarf_tree_layout *layout, const swarf_body *body,
 struct bins {
     int32_t *starts, *numbers, *columns;
     size_t column_count; /* that have tracks */
+    size_t tracks;       /* binned */
     int32_t track;
     size_t total;
 };
@@ -219,16 +233,19 @@ static void add_one(void *context, int32_t column)
     bins->numbers[bins->starts[column]++] = bins->track;
 }
 
-static swarf_status fill_bins(const swarf_tree_layout *layout, const swarf_body *body, const swarf_track_list *list,
-                              struct bins *bins)
+/* A batch ends at this many tracks times columns: about a second of work on one thread, which is how long a cancel may
+ * wait. It does not depend on time, so that the same moves always make the same batches. */
+enum { MOST_BINNED = 400000 };
+
+/* Bin the first tracks of a list, as many as one batch takes. */
+static swarf_status fill_bins(const swarf_tree_layout *layout, const swarf_body *body, const swarf_track *tracks,
+                              size_t count, struct bins *bins)
 {
     const size_t columns = (size_t)layout->count[0] * (size_t)layout->count[1] * NODE_COLUMNS * NODE_COLUMNS;
     bins->starts = calloc(columns + 1, sizeof *bins->starts);
     if (!bins->starts) return swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
-    for (size_t i = 0; i < list->count; i++) for_columns(layout, body, &list->tracks[i], count_one, bins);
-    if (bins->total > INT32_MAX || list->count > INT32_MAX)
-        return swarf_fail(SWARF_ERROR_MEMORY, "stock: %zu moves at once are too many; cut in smaller batches",
-                          list->count);
+    for (; bins->tracks < count && bins->total < MOST_BINNED; bins->tracks++)
+        for_columns(layout, body, &tracks[bins->tracks], count_one, bins);
     for (size_t i = 0; i < columns; i++) bins->column_count += bins->starts[i + 1] > 0;
     for (size_t i = 0; i < columns; i++) bins->starts[i + 1] += bins->starts[i];
     bins->numbers = malloc((bins->total + 1) * sizeof *bins->numbers);
@@ -237,9 +254,9 @@ static swarf_status fill_bins(const swarf_tree_layout *layout, const swarf_body 
     size_t used = 0;
     for (size_t i = 0; i < columns; i++)
         if (bins->starts[i + 1] > bins->starts[i]) bins->columns[used++] = (int32_t)i;
-    for (size_t i = 0; i < list->count; i++) {
+    for (size_t i = 0; i < bins->tracks; i++) {
         bins->track = (int32_t)i;
-        for_columns(layout, body, &list->tracks[i], add_one, bins);
+        for_columns(layout, body, &tracks[i], add_one, bins);
     }
     /* filling moved every start to the next one's place */
     memmove(bins->starts + 1, bins->starts, columns * sizeof *bins->starts);
@@ -247,27 +264,58 @@ static swarf_status fill_bins(const swarf_tree_layout *layout, const swarf_body 
     return SWARF_OK;
 }
 
-static swarf_status cut_tracks(swarf_stock *stock, const swarf_body *body, const swarf_track_list *list,
-                               const swarf_progress *progress, double from, double to)
+/* Within a batch some columns are cut and others not, with walls between them that have no band. So a wish to cancel is
+ * kept until the batch is done. */
+struct deferred {
+    const swarf_progress *progress;
+    int cancelled;
+};
+
+static int report_deferred(void *user, double fraction)
+{
+    struct deferred *deferred = user;
+    if (!deferred->cancelled) deferred->cancelled = deferred->progress->fn(deferred->progress->user, fraction) != 0;
+    return 0;
+}
+
+/* Cut the first tracks of a list as one batch; *done: how many. */
+static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,
+                              const swarf_progress *progress, double from, double to, size_t *done)
 {
     const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     struct bins bins = {0};
     const int threads = swarf_threads();
     swarf_column *scratch = calloc((size_t)threads, sizeof *scratch);
-    swarf_status status =
-        scratch ? fill_bins(layout, body, list, &bins) : swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
+    swarf_status status = scratch ? fill_bins(layout, body, tracks, count, &bins)
+                                  : swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
     if (status == SWARF_OK) {
+        const double share = (double)bins.tracks / (double)count;
         struct cut_work work = {
-            stock,       layout,       swarf_kernel_current(),          body,   list->tracks, bins.columns,
-            bins.starts, bins.numbers, layout->count[1] * NODE_COLUMNS, scratch};
-        status = swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, to);
+            stock,       layout,       swarf_kernel_current(),          body,    tracks, bins.columns,
+            bins.starts, bins.numbers, layout->count[1] * NODE_COLUMNS, scratch, threads};
+        status = swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, from + (to - from) * share);
     }
     for (int i = 0; scratch && i < threads; i++) swarf_column_free(&scratch[i]);
     free(scratch);
     free(bins.starts);
     free(bins.numbers);
     free(bins.columns);
+    *done = bins.tracks;
     return status;
+}
+
+static swarf_status cut_tracks(swarf_stock *stock, const swarf_body *body, const swarf_track_list *list,
+                               const swarf_progress *progress, double from, double to)
+{
+    struct deferred deferred = {progress, 0};
+    const swarf_progress patient = {report_deferred, &deferred};
+    for (size_t first = 0, done = 0; first < list->count; first += done) {
+        const double at = from + (to - from) * (double)first / (double)list->count;
+        SWARF_TRY(cut_batch(stock, body, list->tracks + first, list->count - first,
+                            progress && progress->fn ? &patient : NULL, at, to, &done));
+        if (deferred.cancelled) return swarf_fail(SWARF_ERROR_CANCELLED, "cancelled");
+    }
+    return swarf_progress_report(progress, to);
 }
 
 swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
@@ -281,7 +329,7 @@ swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const sw
         status = swarf_track_append(&list, &paths[i], layout->origin, layout->voxel);
     if (status == SWARF_OK) status = cut_tracks(stock, body, &list, progress, from, to);
     free(list.tracks);
-    return status == SWARF_OK ? swarf_progress_report(progress, to) : status;
+    return status;
 }
 
 swarf_status swarf_stock_cut(swarf_stock *stock, const swarf_cutter *cutter, const swarf_path *paths, size_t count,

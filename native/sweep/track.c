@@ -11,6 +11,8 @@
 /* A line steeper than this (run over rise) is swept as vertical: over the tallest stock (a million voxels) it leaves
  * its track by a thousandth of a voxel. */
 static const double vertical = 1e-9;
+/* No stock is a thousandth of this many voxels large; squares and sums of such numbers stay finite. */
+static const double farthest = 1e30;
 /* Steps of less than this many voxels between the ends of an arc are level, radii that differ by less are equal. */
 static const double level = 1e-4;
 
@@ -50,7 +52,8 @@ static swarf_status append_chords(swarf_track_list *list, const swarf_path *path
     const double step = fmin(0.5 * M_PI, 2 * acos(1 - inside));
     const double outwards = 1 + 2.0 / 3.0 * (1 - cos(0.5 * step));
     const double steps = ceil(fabs(path->arc.angle_rad) / step);
-    if (!(steps < 1e8))
+    if (!(steps < 4e6)) /* half a gigabyte */
+
         return swarf_fail(SWARF_ERROR_ARGUMENT, "arc: %g turns of radius %g voxels are too many",
                           path->arc.angle_rad / (2 * M_PI), radius);
     const size_t count = steps < 1 ? 1 : (size_t)steps;
@@ -74,7 +77,9 @@ swarf_status swarf_track_append(swarf_track_list *list, const swarf_path *path, 
     to_index(path->start, origin, voxel, a);
     to_index(path->end, origin, voxel, b);
     for (int k = 0; k < 3; k++)
-        SWARF_REQUIRE(isfinite(a[k]) && isfinite(b[k]), "path: coordinate %c is not finite", "xyz"[k]);
+        SWARF_REQUIRE(fabs(a[k]) < farthest && fabs(b[k]) < farthest,
+                      "path: coordinate %c (%g .. %g mm) is not finite or too far away", "xyz"[k], path -> start[k],
+                      path -> end[k]);
     if (!path->is_arc) return append_line(list, a, b);
 
     SWARF_REQUIRE(isfinite(path->arc.angle_rad), "path: the angle of an arc is not finite");
