@@ -376,9 +376,9 @@ static __attribute__((noinline)) void general_tilted(const swarf_body *body, con
             lanes a = first, b = maximum(first, last);
             struct moment at_a = at_moment(body, component, &tilt, a), at_b = at_moment(body, component, &tilt, b);
             const mask falls = less(at_a.slope, all(0)), climbs = less(all(0), at_b.slope), inner = both(falls, climbs);
-            lanes t = a, bound;
+            lanes bound;
             for (int step = 0; step < SEARCH_STEPS; step++) {
-                t = tangents_meet(a, b, &at_a, &at_b, &bound);
+                lanes t = tangents_meet(a, b, &at_a, &at_b, &bound);
                 const lanes gap = pick(both(inner, less(last, first)), all(0), minimum(at_a.value, at_b.value) - bound);
                 if (!(bits(both(inner, less(all(settled), gap))))) break;
                 if (step & 1) t = (a + b) * 0.5f;
