@@ -5,8 +5,43 @@
 
 #include "test.h"
 
+/* The floor of the bracket's pocket lies on voxel centres with values of about -1e-17 there. */
+static void check_bracket(void)
+{
+    const swarf_box box = {{0, 0, -12}, {60, 40, 0}};
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = 0.2;
+    char path[1100];
+    snprintf(path, sizeof path, "%s/examples/bracket.nc", test_source());
+    swarf_program *program = NULL;
+    swarf_cutter *cutters[2] = {NULL, NULL};
+    swarf_stock *stock = NULL;
+    swarf_simulation *simulation = NULL;
+    swarf_scene *scene = NULL;
+    CHECK_OK(swarf_gcode_read_file(path, NULL, NULL, &program));
+    CHECK_OK(swarf_cutter_parse("flat:d=6,l=20", &cutters[0]));
+    CHECK_OK(swarf_cutter_parse("drill:d=4,l=40", &cutters[1]));
+    const swarf_tool tools[] = {{1, 0, cutters[0]}, {2, 0, cutters[1]}};
+    CHECK_OK(swarf_stock_create_box(&box, &options, &stock));
+    CHECK_OK(
+        swarf_stock_simulate(stock, program, 0, swarf_program_move_count(program), tools, 2, NULL, NULL, &simulation));
+    CHECK_OK(swarf_scene_create(stock, &scene));
+    for (int k = 0; k < 41 * 41; k++) {
+        const double origin[3] = {16 + 0.1 * (k % 41), 21 + 0.1 * (k / 41), 10}, down[3] = {0, 0, -1};
+        double distance = 0;
+        CHECK_OK(swarf_scene_cast(scene, origin, down, 1, &distance, NULL));
+        CHECK_NEAR(distance, 16.5, 0.02 * options.voxel_mm);
+    }
+    swarf_scene_destroy(scene);
+    swarf_simulation_destroy(simulation);
+    swarf_stock_destroy(stock);
+    for (int i = 0; i < 2; i++) swarf_cutter_release(cutters[i]);
+    swarf_program_release(program);
+}
+
 int main(void)
 {
+    check_bracket();
     const swarf_box box = {{0, 0, -12}, {20, 20, 0}};
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = 0.2;
