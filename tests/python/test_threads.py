@@ -144,7 +144,6 @@ def round_of_everything(path):
     return views
 
 
-@pytest.mark.skipif("SWARF_SANITIZE" in os.environ, reason="a sanitizer keeps freed memory back: growth says nothing")
 def test_memory_does_not_grow(tmp_path):
     path = tmp_path / "mesh.stl"
     for _ in range(20):
