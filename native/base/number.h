@@ -4,8 +4,8 @@
 #ifndef SWARF_BASE_NUMBER_H
 #define SWARF_BASE_NUMBER_H
 
-/** Read [+-] digits [. digits] [e [+-] digits] from `at` on, not beyond `end`: the longest such text, without blanks, to
- *  within two units in the last place. Returns where it ends; NULL, with `out` untouched, when there is no number or
+/** Read [+-] digits [. digits] [e [+-] digits] from `at` on, not beyond `end`: the longest such text, without blanks,
+ * to within two units in the last place. Returns where it ends; NULL, with `out` untouched, when there is no number or
  *  none that a double can hold. Any thread. */
 const char *swarf_number_read(const char *at, const char *end, double *out);
 

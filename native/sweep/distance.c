@@ -24,7 +24,8 @@ static swarf_status measure(const swarf_body *body, const swarf_track_list *list
         const swarf_block here = {0, 0, 0, 0, 0};
         size_t near = 0;
         float found = SWARF_HALF_WIDTH;
-        if (kernel->cull(body, column, column->list[LIST_ALL], column->count, &here, 1, &column->list[LIST_CUBE], &near))
+        if (kernel->cull(body, column, column->list[LIST_ALL], column->count, &here, 1, &column->list[LIST_CUBE],
+                         &near))
             found = -SWARF_HALF_WIDTH;
         else if (near)
             found = kernel->distance(body, column, column->list[LIST_CUBE], near);

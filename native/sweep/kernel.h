@@ -30,8 +30,8 @@ typedef struct swarf_leaf_cut {
 } swarf_leaf_cut;
 
 typedef struct swarf_kernel {
-    /** For each of up to BLOCKS_AT_ONCE blocks of one size, keep of the tracks `in` those that can change a value in it:
-     *  out[b] and out_count[b]. Returns the bits of the blocks that are all cut away (their lists mean nothing). */
+    /** For each of up to BLOCKS_AT_ONCE blocks of one size, keep of the tracks `in` those that can change a value in
+     * it: out[b] and out_count[b]. Returns the bits of the blocks that are all cut away (their lists mean nothing). */
     unsigned (*cull)(const swarf_body *body, const swarf_column *column, const int32_t *in, size_t count,
                      const swarf_block *blocks, size_t block_count, int32_t *const *out, size_t *out_count);
     /** values = max(values, -sweep) over all tracks of the list; 0: nothing was within reach, outputs are not set. */

@@ -239,7 +239,8 @@ static unsigned cull(const swarf_body *body, const swarf_column *c, const int32_
         const unsigned valid = count - i >= LANES ? 0xffffu : (1u << (count - i)) - 1;
         struct sixteen t = gather_tracks(c, in + i, body->kind == SWARF_BODY_BALL);
         for (size_t b = 0; b < block_count; b++)
-            if (!(covered >> b & 1) && cull_sixteen(body, c, in + i, valid, &blocks[b], &t, &state[b], out[b], c->bound[b], c->floor[b]))
+            if (!(covered >> b & 1) &&
+                cull_sixteen(body, c, in + i, valid, &blocks[b], &t, &state[b], out[b], c->bound[b], c->floor[b]))
                 covered |= 1u << b;
     }
     for (size_t b = 0; b < block_count; b++)
@@ -627,8 +628,9 @@ static int cut(const swarf_body *body, const swarf_column *c, const int32_t *lis
             keep_group(leaf, &state, gx, gy);
             continue;
         } else {
-            distance_group(body, c, each ? c->list[LIST_GROUPS + g] : list, counts[g], load(lane_x) + (leaf->x + (float)gx),
-                           load(lane_y) + (leaf->y + (float)gy), leaf->z, 8, found);
+            distance_group(body, c, each ? c->list[LIST_GROUPS + g] : list, counts[g],
+                           load(lane_x) + (leaf->x + (float)gx), load(lane_y) + (leaf->y + (float)gy), leaf->z, 8,
+                           found);
             merge_group(leaf, &state, gx, gy, found);
         }
         touched = 1;
