@@ -278,25 +278,65 @@ static int report_deferred(void *user, double fraction)
     return 0;
 }
 
+/* Scratch memory of all threads. The last one is kept for the next batch: making it costs more than cutting one move.
+ */
+struct scratch {
+    int count;
+    swarf_column columns[];
+};
+
+static struct scratch *kept_scratch; /* only by atomic exchange */
+
+static void free_scratch(struct scratch *scratch)
+{
+    for (int i = 0; scratch && i < scratch->count; i++) swarf_column_free(&scratch->columns[i]);
+    free(scratch);
+}
+
+static struct scratch *take_scratch(int threads)
+{
+    struct scratch *scratch = __atomic_exchange_n(&kept_scratch, NULL, __ATOMIC_ACQ_REL);
+    if (scratch && scratch->count >= threads) return scratch;
+    free_scratch(scratch);
+    scratch = calloc(1, sizeof *scratch + (size_t)threads * sizeof scratch->columns[0]);
+    if (scratch) scratch->count = threads;
+    return scratch;
+}
+
+/* Keep it, unless it has grown large: a batch of millions of moves in one place comes rarely. */
+static void keep_scratch(struct scratch *scratch)
+{
+    const size_t most = 1 << 14; /* tracks a column: 4 MB a thread */
+    for (int i = 0; scratch && i < scratch->count; i++)
+        if (scratch->columns[i].room > most) swarf_column_free(&scratch->columns[i]);
+    free_scratch(__atomic_exchange_n(&kept_scratch, scratch, __ATOMIC_ACQ_REL));
+}
+
 /* Cut the first tracks of a list as one batch; *done: how many. */
 static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,
                               const swarf_progress *progress, double from, double to, size_t *done)
 {
     const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     struct bins bins = {0};
-    const int threads = swarf_threads();
-    swarf_column *scratch = calloc((size_t)threads, sizeof *scratch);
+    struct scratch *scratch = take_scratch(swarf_threads());
     swarf_status status = scratch ? fill_bins(layout, body, tracks, count, &bins)
                                   : swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
     if (status == SWARF_OK) {
         const double share = (double)bins.tracks / (double)count;
-        struct cut_work work = {
-            stock,       layout,       swarf_kernel_current(),          body,    tracks, bins.columns,
-            bins.starts, bins.numbers, layout->count[1] * NODE_COLUMNS, scratch, threads};
+        struct cut_work work = {stock,
+                                layout,
+                                swarf_kernel_current(),
+                                body,
+                                tracks,
+                                bins.columns,
+                                bins.starts,
+                                bins.numbers,
+                                layout->count[1] * NODE_COLUMNS,
+                                scratch->columns,
+                                scratch->count};
         status = swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, from + (to - from) * share);
     }
-    for (int i = 0; scratch && i < threads; i++) swarf_column_free(&scratch[i]);
-    free(scratch);
+    keep_scratch(scratch);
     free(bins.starts);
     free(bins.numbers);
     free(bins.columns);

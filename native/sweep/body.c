@@ -307,6 +307,9 @@ static void recognise(const outline *o, double voxel, swarf_body *body)
                              f[n - 1].radius == 0 && f[n - 1].first > 0.5 * M_PI - same_angle;
     if (n == 3 && side_and_top && f[0].radius == 0 && f[0].first < -0.5 * M_PI + same_angle) {
         body->kind = SWARF_BODY_CYLINDER;
+        body->core_radius = body->radius;
+        body->core_lo = body->z_lo;
+        body->core_hi = body->z_hi;
     } else if (n >= 2 && f[0].radius > 0 && fabs(f[0].centre_r) < tiny && f[0].first < -0.5 * M_PI + same_angle &&
                fabs(f[0].last) < same_angle && (side_and_top || n == 2) && f[n - 1].radius == 0 &&
                f[n - 1].first > 0.5 * M_PI - same_angle) {
@@ -347,8 +350,8 @@ swarf_status swarf_body_create(const swarf_cutter *cutter, swarf_part_kind kind,
         body->z_lo = (float)(o.z_lo / voxel);
         body->z_hi = (float)(o.z_hi / voxel);
         if (o.chain_count) {
-            find_core(&o, voxel, body);
             recognise(&o, voxel, body);
+            if (body->kind == SWARF_BODY_GENERAL) find_core(&o, voxel, body);
         }
         status = emit(&o, voxel, body);
     }
