@@ -6,7 +6,7 @@ set(SWARF_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/swarf)
 install(TARGETS swarf EXPORT swarfTargets)
 install(DIRECTORY native/include/swarf DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT swarfTargets NAMESPACE swarf:: DESTINATION ${SWARF_CMAKE_DIR})
-configure_package_config_file(cmake/swarfConfig.cmake.in swarfConfig.cmake INSTALL_DESTINATION ${SWARF_CMAKE_DIR})
+configure_package_config_file(native/package/swarfConfig.cmake.in swarfConfig.cmake INSTALL_DESTINATION ${SWARF_CMAKE_DIR})
 write_basic_package_version_file(swarfConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/swarfConfig.cmake ${PROJECT_BINARY_DIR}/swarfConfigVersion.cmake
   DESTINATION ${SWARF_CMAKE_DIR})
@@ -14,7 +14,7 @@ install(FILES ${PROJECT_BINARY_DIR}/swarfConfig.cmake ${PROJECT_BINARY_DIR}/swar
 # The .pc file finds its prefix from its own place, so that the installed tree can be moved.
 file(RELATIVE_PATH SWARF_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" SWARF_PC_PREFIX ${SWARF_PC_PREFIX})
-configure_file(cmake/swarf.pc.in swarf.pc @ONLY)
+configure_file(native/package/swarf.pc.in swarf.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/swarf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
