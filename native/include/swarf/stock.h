@@ -2,9 +2,10 @@
 /* Stock: a narrow-band level set (OpenVDB FloatGrid, mm, negative inside, half width 3 voxels).
  *
  * One thread per object: a call on a stock that is in use by another thread returns SWARF_ERROR_BUSY.
- * Inside, all cores work; results do not depend on their number. Long calls can be cancelled and leave a consistent stock:
- * a cut is done in batches of about a second's work on one thread, and a cancel takes effect after the one under way, so
- * that whole moves are cut or not. When a cut runs out of memory half way, read or copy nothing of the stock: destroy it.
+ * Inside, all cores work; results do not depend on their number. Long calls can be cancelled and leave a consistent
+ * stock: a cut is done in batches of about a second's work on one thread, and a cancel takes effect after the one under
+ * way, so that whole moves are cut or not. When a cut runs out of memory half way, read or copy nothing of the stock:
+ * destroy it.
  */
 #ifndef SWARF_STOCK_H
 #define SWARF_STOCK_H
