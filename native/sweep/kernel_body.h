@@ -539,9 +539,12 @@ INLINE void distance_group(const swarf_body *body, const swarf_column *c, const 
             cylinder_line(body, c, i, x, y, z0, 0, best);
         }
     }
+    /* where no ball is within the band its root is not worth taking */
+    const float reach = body->radius + SWARF_HALF_WIDTH;
     for (int z = 0; z < 8; z++) {
         lanes value = best[z];
-        if (ball) value = minimum(value, root(maximum(capsule[z], all(0))) - body->radius);
+        if (ball && bits(less(capsule[z], all(reach * reach))))
+            value = minimum(value, root(maximum(capsule[z], all(0))) - body->radius);
         store(out + z * LANES, value);
     }
 }
