@@ -15,17 +15,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
-
-/* TBB is not instrumented, so the thread sanitizer has to be told that a loop comes after what stood before it
- * and before what stands behind it. Nothing orders the pieces of a loop: races between them are found. */
-#if defined(__SANITIZE_THREAD__)
-#include <sanitizer/tsan_interface.h>
-#define HAPPENS_BEFORE(token) __tsan_release(token)
-#define HAPPENS_AFTER(token) __tsan_acquire(token)
-#else
-#define HAPPENS_BEFORE(token) ((void)0)
-#define HAPPENS_AFTER(token) ((void)0)
-#endif
+#include <vector>
 
 namespace {
 
@@ -34,20 +24,26 @@ thread_local int current_slot = 0;
 
 /* Making an arena costs more than cutting one move, so the last one is kept for the next call of the same width;
  * calls that overlap get one of their own. */
-std::unique_ptr<tbb::task_arena> kept_arena;
 std::mutex kept_mutex;
 
-std::unique_ptr<tbb::task_arena> take_arena(int threads)
+/* Never destroyed at exit: TBB may be gone by then. */
+std::unique_ptr<tbb::task_arena> &kept_arena()
+{
+    static auto *const arena = new std::unique_ptr<tbb::task_arena>;
+    return *arena;
+}
+
+[[maybe_unused]] std::unique_ptr<tbb::task_arena> take_arena(int threads)
 {
     std::lock_guard<std::mutex> lock(kept_mutex);
-    if (kept_arena && kept_arena->max_concurrency() == threads) return std::move(kept_arena);
+    if (kept_arena() && kept_arena()->max_concurrency() == threads) return std::move(kept_arena());
     return std::make_unique<tbb::task_arena>(threads);
 }
 
-void keep_arena(std::unique_ptr<tbb::task_arena> arena)
+[[maybe_unused]] void keep_arena(std::unique_ptr<tbb::task_arena> arena)
 {
     std::lock_guard<std::mutex> lock(kept_mutex);
-    kept_arena = std::move(arena);
+    kept_arena() = std::move(arena);
 }
 
 /* TBB has a worker per core unless told otherwise; more are wanted when a count above that is asked for.
@@ -70,7 +66,6 @@ struct run {
     std::atomic<int> failed{SWARF_OK};
     std::string text{}; /* written once, by the thread that sets `failed` */
     clock_type::time_point reported = clock_type::now();
-    char began = 0, ended = 0; /* only their addresses are used, as tokens of the thread sanitizer */
 
     void stop(swarf_status status)
     {
@@ -92,6 +87,39 @@ struct run {
         if (answer != SWARF_OK) stop(answer);
     }
 };
+
+#if defined(__SANITIZE_THREAD__)
+/* TBB is not instrumented, so that the thread sanitizer does not see how it hands work over. Plain threads do the same
+ * work in its place, and what it then reports is ours. */
+void run_on(int threads, run &state)
+{
+    std::atomic<size_t> next{0};
+    const auto take = [&](int slot) {
+        current_slot = slot;
+        for (size_t index = next++; index < state.count; index = next++) state.one(index);
+    };
+    std::vector<std::thread> team;
+    for (int slot = 1; slot < threads; slot++) team.emplace_back(take, slot);
+    take(0);
+    for (std::thread &thread : team) thread.join();
+}
+#else
+void run_on(int threads, run &state)
+{
+    std::unique_ptr<tbb::task_arena> arena = take_arena(threads);
+    arena->execute([&] {
+        tbb::parallel_for(
+            tbb::blocked_range<size_t>(0, state.count, 1),
+            [&](const tbb::blocked_range<size_t> &range) {
+                current_slot = tbb::this_task_arena::current_thread_index();
+                for (size_t index = range.begin(); index != range.end(); index++) state.one(index);
+            },
+            tbb::simple_partitioner());
+    });
+    current_slot = 0;
+    keep_arena(std::move(arena));
+}
+#endif
 
 } // namespace
 
@@ -141,22 +169,7 @@ extern "C" swarf_status swarf_parallel_for(size_t count, swarf_work_fn work, voi
             current_slot = 0;
             for (size_t index = 0; index < count && state.failed.load() == SWARF_OK; index++) state.one(index);
         } else {
-            HAPPENS_BEFORE(&state.began);
-            std::unique_ptr<tbb::task_arena> arena = take_arena(threads);
-            arena->execute([&] {
-                tbb::parallel_for(
-                    tbb::blocked_range<size_t>(0, count, 1),
-                    [&](const tbb::blocked_range<size_t> &range) {
-                        current_slot = tbb::this_task_arena::current_thread_index();
-                        HAPPENS_AFTER(&state.began);
-                        for (size_t index = range.begin(); index != range.end(); index++) state.one(index);
-                        HAPPENS_BEFORE(&state.ended);
-                    },
-                    tbb::simple_partitioner());
-            });
-            current_slot = 0;
-            keep_arena(std::move(arena));
-            HAPPENS_AFTER(&state.ended);
+            run_on(threads, state);
         }
         const int failed = state.failed.load();
         if (failed != SWARF_OK) return swarf_fail(static_cast<swarf_status>(failed), "%s", state.text.c_str());
