@@ -1,175 +1,28 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command ``swarf``.
+"""The command ``swarf``: collects the subcommands of the package ``commands`` and runs one.
 
 Exit status: 0 done, 1 done with findings of class error, 2 could not run (one line on stderr says why).
 """
 from __future__ import annotations
 
-import argparse
-import os
 import signal
 import sys
-import tempfile
 import threading
-import time
-from typing import NoReturn, Optional, Sequence
+from types import ModuleType
+from typing import Optional, Sequence
 
-from . import _native, readers, report, specs
-from .job import Job
-from .progress import Bar
-from .simulate import DEFAULT_RESOLUTION, output_suffix, simulate
-
-DONE, FINDINGS, FAILED = 0, 1, 2
-
-#: More findings than this are left to the report.
-FINDINGS_SHOWN = 20
+from . import _native
+from .commands import collect
+from .console import FAILED, Parser, one_line
 
 
-class Parser(argparse.ArgumentParser):
-    """An ArgumentParser whose errors are one line like all others."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(FAILED, f"swarf: error: {message}\n")
-
-
-def make_parser() -> Parser:
+def make_parser(commands: dict[str, ModuleType]) -> Parser:
     parser = Parser(prog="swarf", description="Milling simulation: what a program does to the stock.")
     parser.add_argument("--version", action="version", version=f"swarf {_native.version()}")
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=Parser)
-    command = commands.add_parser(
-        "simulate",
-        help="cut a stock with a program",
-        description="Cut a stock with the program in INPUT. Exit status: 0 done, 1 findings of class error, 2 could "
-        "not run. Lengths in mm.",
-    )
-    command.add_argument("input", metavar="INPUT", help="a G-code file, or a .FCStd file where the add-on is installed")
-    command.add_argument("--job", metavar="NAME", help="the job in a .FCStd file, if it has several")
-    command.add_argument("--stock", metavar="SPEC", help=specs.STOCK_HELP)
-    command.add_argument("--tool", metavar="N=SPEC", action="append", default=[],
-                         help="tool number N, e.g. 1=flat:d=3,l=18 (repeatable)")
-    size = command.add_mutually_exclusive_group()
-    size.add_argument("--voxel", metavar="MM", type=float, help="edge of a voxel")
-    size.add_argument("--resolution", metavar="N", type=float,
-                      help=f"voxels along the stock's longest edge (default {DEFAULT_RESOLUTION})")
-    command.add_argument("--threads", metavar="T", type=int, default=0, help="threads to use (default: all cores)")
-    command.add_argument("--output", metavar="FILE", action="append", default=[],
-                         help="write the result: .stl .ply .obj .vdb (repeatable)")
-    command.add_argument("--picture", metavar="FILE.png", help="write a picture")
-    command.add_argument("--report", metavar="FILE.json", help="write a report")
+    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=Parser)
+    for command in commands.values():
+        command.add(subparsers)
     return parser
-
-
-def check_writable(path: str) -> None:
-    """OSError unless a file can be put there; leaves nothing behind."""
-    if os.path.exists(path) and not os.path.isfile(path):
-        raise OSError(f"{path}: cannot be written: it is not a regular file")
-    folder = os.path.dirname(os.path.abspath(path))
-    try:
-        # Outputs are written beside their place and renamed: what counts is the folder.
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise OSError(f"{path}: cannot be written: {error.strerror or error}") from None
-
-
-def check_outputs(arguments: argparse.Namespace) -> None:
-    """Refuse, before the long work, outputs that could not be written after it."""
-    for path in arguments.output:
-        output_suffix(path)
-    for option, suffix in (("picture", ".png"), ("report", ".json")):
-        path = getattr(arguments, option)
-        if path is not None and os.path.splitext(path)[1].lower() != suffix:
-            raise ValueError(f"{path}: unknown suffix; a {option} is {suffix}")
-    paths = [path for path in (*arguments.output, arguments.picture, arguments.report) if path is not None]
-    for path in paths:
-        check_writable(path)
-        if os.path.exists(path) and os.path.exists(arguments.input) and os.path.samefile(path, arguments.input):
-            raise ValueError(f"{path}: is the input; an output must not replace it")
-    places = [os.path.realpath(path) for path in paths]
-    for path, place in zip(paths, places):
-        if places.count(place) > 1:
-            raise ValueError(f"{path}: given for two outputs")
-
-
-def add_tools(job: Job, words: Sequence[str]) -> None:
-    """Put ``--tool`` into the job, over what it has; ValueError where a tool is missing that nothing else tells."""
-    given = set()
-    for word in words:
-        number, cutter, text = specs.tool(word)
-        if number in given:
-            raise ValueError(f"tool {number}: given twice")
-        given.add(number)
-        job.tools[number] = cutter
-        job.tool_names[number] = text
-
-
-def check_gcode_job(job: Job, path: str) -> None:
-    """G-code tells neither tools nor stock: ValueError says which are missing and how to give them."""
-    used = job.program.tools
-    if -1 in used and len(job.tools) == 1 and used == (-1,):
-        # The program never names a tool: the only one there is must be meant.
-        number, cutter = next(iter(job.tools.items()))
-        job.tools[-1] = cutter
-        job.tool_names[-1] = job.tool_names[number]
-        job.notes.append(f"the program names no tool: tool {number} is used")
-    missing = [number for number in used if number not in job.tools]
-    if -1 in missing:
-        raise ValueError(f"{path}: moves before the first T and M6 have no tool; "
-                         "begin the program with a tool change, e.g. T1 M6")
-    if missing:
-        names = ", ".join(f"T{number}" for number in missing)
-        options = " ".join(f"--tool {number}=flat:d=6,l=20" for number in missing)
-        raise ValueError(f"{path}: the program uses {names}, which G-code does not describe; give e.g. {options}")
-    if job.stock is None:
-        raise ValueError(f"{path}: G-code does not tell the stock; give e.g. --stock box:0,0,-10,100,60,0")
-
-
-def run(arguments: argparse.Namespace, bar: Bar) -> int:
-    """``swarf simulate``."""
-    if abs(arguments.threads) >= 1 << 31:  # no int of C's: the library could not say so
-        raise ValueError(f"threads: {arguments.threads} is not in 0 .. 1024 (0: one per core)")
-    _native.set_threads(arguments.threads)
-    check_outputs(arguments)
-    stock = None if arguments.stock is None else specs.stock(arguments.stock)
-
-    started = time.perf_counter()
-    job = readers.read(arguments.input, arguments.job, lambda fraction: bar("read", fraction))
-    if stock is not None:
-        job.stock = stock
-    add_tools(job, arguments.tool)
-    if len(job.program) == 0:
-        raise ValueError(f"{arguments.input}: the program has no moves: there is nothing to simulate")
-    if os.path.splitext(arguments.input)[1].lower() in readers.GCODE_SUFFIXES:
-        check_gcode_job(job, arguments.input)
-    seconds_read = time.perf_counter() - started
-
-    result = simulate(
-        job,
-        voxel=arguments.voxel,
-        resolution=arguments.resolution,
-        mesh=arguments.report is not None,
-        outputs=arguments.output,
-        picture=arguments.picture,
-        progress=bar,
-    )
-    bar.close()
-    made = report.make(result, arguments.input, seconds_read)
-    if arguments.report is not None:
-        report.write(made, arguments.report)
-    for note in job.notes:
-        print(f"swarf: note: {one_line(note)}", file=sys.stderr)
-    for finding in result.simulation.findings[:FINDINGS_SHOWN]:
-        print(f"swarf: {finding.severity}: line {finding.line}: {one_line(finding.text)}", file=sys.stderr)
-    hidden = len(result.simulation.findings) - FINDINGS_SHOWN
-    if hidden > 0:
-        print(f"swarf: note: {hidden} more findings are in the report", file=sys.stderr)
-    if sys.stdout.isatty():
-        print(report.summary(made))
-    return FINDINGS if result.failed else DONE
-
-
-def one_line(text: object) -> str:
-    return " ".join(str(text).split())
 
 
 def interrupt_on_sigterm() -> None:
@@ -180,15 +33,14 @@ def interrupt_on_sigterm() -> None:
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the command with these words (default: of the process); returns the exit status."""
-    arguments = make_parser().parse_args(argv)
+    commands = collect()
+    arguments = make_parser(commands).parse_args(argv)
     interrupt_on_sigterm()
-    bar = Bar()
     try:
-        return run(arguments, bar)
+        return int(commands[arguments.command].run(arguments))
     except (_native.Error, OSError, ValueError, MemoryError) as error:
         message = one_line(error) or type(error).__name__
     except KeyboardInterrupt:
         message = "interrupted"
-    bar.close()
     print(f"swarf: error: {message}", file=sys.stderr)
     return FAILED

@@ -8,12 +8,18 @@ from typing import Optional, TextIO
 
 
 class Bar:
-    """One line that is drawn over itself; silent where the stream is no terminal."""
+    """One line that is drawn over itself; silent where the stream is no terminal. A context that closes it."""
 
     def __init__(self, stream: Optional[TextIO] = None) -> None:
         self.stream = sys.stderr if stream is None else stream
         self.active = self.stream.isatty()
         self._drawn = ""
+
+    def __enter__(self) -> Bar:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def __call__(self, stage: str, fraction: float) -> None:
         """Show that ``fraction`` (0..1) of a stage is done."""

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the subcommands share: exit statuses, the parser's class, checks of output files."""
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+from typing import NoReturn, Optional, Sequence
+
+#: Exit statuses: done, done with findings of class error, could not run (one line on stderr says why).
+DONE, FINDINGS, FAILED = 0, 1, 2
+
+
+class Parser(argparse.ArgumentParser):
+    """An ArgumentParser whose errors are one line like all others."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(FAILED, f"swarf: error: {message}\n")
+
+
+def one_line(text: object) -> str:
+    """A text without line breaks, so that one message is one line."""
+    return " ".join(str(text).split())
+
+
+def check_suffix(path: Optional[str], what: str, suffix: str) -> None:
+    """ValueError unless a path (None: not given) ends in ``suffix``; ``what`` is e.g. "picture"."""
+    if path is not None and os.path.splitext(path)[1].lower() != suffix:
+        raise ValueError(f"{path}: unknown suffix; a {what} is {suffix}")
+
+
+def check_writable(path: str) -> None:
+    """OSError unless a file can be put there; leaves nothing behind."""
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise OSError(f"{path}: cannot be written: it is not a regular file")
+    folder = os.path.dirname(os.path.abspath(path))
+    try:
+        # Outputs are written beside their place and renamed: what counts is the folder.
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise OSError(f"{path}: cannot be written: {error.strerror or error}") from None
+
+
+def check_outputs(paths: Sequence[Optional[str]], source: str) -> None:
+    """Refuse, before the long work, outputs (None: not given) that could not be written after it.
+
+    OSError where a file cannot be put; ValueError for one that is the input ``source`` or given twice.
+    """
+    given = [path for path in paths if path is not None]
+    for path in given:
+        check_writable(path)
+        if os.path.exists(path) and os.path.exists(source) and os.path.samefile(path, source):
+            raise ValueError(f"{path}: is the input; an output must not replace it")
+    places = [os.path.realpath(path) for path in given]
+    for path, place in zip(given, places):
+        if places.count(place) > 1:
+            raise ValueError(f"{path}: given for two outputs")
