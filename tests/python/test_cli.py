@@ -5,6 +5,7 @@ import json
 import os
 import signal
 import subprocess
+import time
 
 import pytest
 
@@ -205,14 +206,27 @@ def test_help_and_version(swarf_run):
         assert f"--{option}" in out
 
 
+def open_once_read(fifo):
+    """The fifo for writing, None while nobody has it open for reading."""
+    try:
+        handle = os.open(fifo, os.O_WRONLY | os.O_NONBLOCK)
+    except OSError:
+        return None
+    os.set_blocking(handle, True)
+    return open(handle, "w", encoding="ascii")
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signals_end_it_like_an_error(launcher, tmp_path, number):
-    os.mkfifo(tmp_path / "job.nc")  # opened by us when it is opened by the command, which then waits for our words
+    fifo = tmp_path / "job.nc"
+    os.mkfifo(fifo)
     command = [launcher, "simulate", "job.nc", "--stock", STOCK, "--tool", TOOL, "--output", "s.stl"]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as running:
-        # It may be gone before it has read our words.
-        with contextlib.suppress(BrokenPipeError), open(tmp_path / "job.nc", "w", encoding="ascii") as pipe:
-            running.send_signal(number)
+        while (pipe := open_once_read(fifo)) is None:  # the command waits for our words from there on
+            assert running.poll() is None
+            time.sleep(0.01)
+        running.send_signal(number)
+        with contextlib.suppress(BrokenPipeError), pipe:  # it may be gone before it has read them
             pipe.write(GCODE)
         _, err = running.communicate(timeout=120)
     assert (running.returncode, err) == (2, "swarf: error: interrupted\n")
