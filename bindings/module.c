@@ -98,7 +98,10 @@ static int module_exec(PyObject *module)
                    add_type(module, &program_spec, &state->program, 0) ||
                    add_type(module, &stock_spec, &state->stock, 0) ||
                    add_type(module, &simulation_spec, &state->simulation, 0) ||
-                   add_type(module, &mesh_spec, &state->mesh, 0) ||
+                   add_type(module, &mesh_spec, &state->mesh, 0) || add_type(module, &camera_spec, &state->camera, 0) ||
+                   add_type(module, &scene_spec, &state->scene, 0) ||
+                   add_type(module, &picture_spec, &state->picture, 0) ||
+                   add_sequence(module, &pick_desc, &state->pick) ||
                    add_sequence(module, &finding_desc, &state->finding) ||
                    add_sequence(module, &comparison_desc, &state->comparison)
                ? -1
@@ -113,6 +116,10 @@ static int module_traverse(PyObject *module, visitproc visit, void *arg)
     Py_VISIT(state->stock);
     Py_VISIT(state->simulation);
     Py_VISIT(state->mesh);
+    Py_VISIT(state->camera);
+    Py_VISIT(state->scene);
+    Py_VISIT(state->picture);
+    Py_VISIT(state->pick);
     Py_VISIT(state->view);
     Py_VISIT(state->finding);
     Py_VISIT(state->comparison);
@@ -132,6 +139,10 @@ static int module_clear(PyObject *module)
     Py_CLEAR(state->stock);
     Py_CLEAR(state->simulation);
     Py_CLEAR(state->mesh);
+    Py_CLEAR(state->camera);
+    Py_CLEAR(state->scene);
+    Py_CLEAR(state->picture);
+    Py_CLEAR(state->pick);
     Py_CLEAR(state->view);
     Py_CLEAR(state->finding);
     Py_CLEAR(state->comparison);

@@ -24,9 +24,13 @@ typedef struct module_state {
     PyTypeObject *stock;
     PyTypeObject *simulation;
     PyTypeObject *mesh;
+    PyTypeObject *camera;
+    PyTypeObject *scene;
+    PyTypeObject *picture;
     PyTypeObject *view;
     PyTypeObject *finding; /* struct sequences */
     PyTypeObject *comparison;
+    PyTypeObject *pick;
     PyObject *error; /* exceptions, see error.c */
     PyObject *format_error;
     PyObject *geometry_error;
@@ -128,6 +132,24 @@ extern const char stock_picture_doc[];
 PyObject *stock_picture(PyObject *self, PyObject *args, PyObject *keywords);
 extern const char stock_cast_doc[];
 PyObject *stock_cast(PyObject *self, PyObject *args, PyObject *keywords);
+
+/* ---- camera.c ---- */
+
+typedef struct camera_object {
+    PyObject_HEAD swarf_camera camera;
+} camera_object;
+extern PyType_Spec camera_spec;
+
+/** Names of the views, SWARF_VIEW_COUNT of them. */
+extern const char *const view_names[];
+/** A box from ((x, y, z), (x, y, z)), or an empty one from None. 0, or -1 with an exception. */
+int camera_box(PyObject *box, swarf_box *out);
+
+/* ---- scene.c ---- */
+
+extern PyType_Spec scene_spec;
+extern PyType_Spec picture_spec;
+extern PyStructSequence_Desc pick_desc;
 
 /* ---- mesh.c ---- */
 

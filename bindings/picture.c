@@ -2,9 +2,6 @@
 /* Stock.picture() and Stock.cast(): a scene lives for one call only, for the stock must not change under it. */
 #include "native.h"
 
-static const char *const view_names[] = {"isometric", "top", "bottom", "front", "rear", "left", "right"};
-_Static_assert(sizeof view_names / sizeof view_names[0] == SWARF_VIEW_COUNT, "one name per view");
-
 const char stock_picture_doc[] =
     "picture($self, path=None, width=1024, height=768, *, view='isometric', samples=3, perspective=False, "
     "progress=None)\n--\n\n"

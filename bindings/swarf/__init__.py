@@ -14,6 +14,7 @@
 """
 from ._native import (
     BusyError,
+    Camera,
     Cancelled,
     Comparison,
     Cutter,
@@ -22,7 +23,10 @@ from ._native import (
     FormatError,
     GeometryError,
     Mesh,
+    Pick,
+    Picture,
     Program,
+    Scene,
     Simulation,
     Stock,
     compare_volume,
@@ -38,7 +42,7 @@ from .simulate import Result, simulate
 __version__ = version()
 
 __all__ = [
-    "BusyError", "Cancelled", "Comparison", "Cutter", "Error", "Finding", "FormatError", "GeometryError", "Job",
-    "Mesh", "Program", "Result", "Simulation", "Stock", "compare_volume", "isa", "memory_peak", "set_threads",
+    "BusyError", "Camera", "Cancelled", "Comparison", "Cutter", "Error", "Finding", "FormatError", "GeometryError", "Job",
+    "Mesh", "Pick", "Picture", "Program", "Result", "Scene", "Simulation", "Stock", "compare_volume", "isa", "memory_peak", "set_threads",
     "simulate", "threads", "version",
 ]

@@ -13,6 +13,9 @@ Point = Sequence[float]
 #: A table of n rows: a buffer of two dimensions (any number format in native byte order, strided or not), or rows.
 Table = Union[Buffer, Sequence[Sequence[float]]]
 PartKind = Literal["flutes", "shank", "holder"]
+View = Literal["isometric", "top", "bottom", "front", "rear", "left", "right"]
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
+Buffers = Literal["rgba", "depth", "normal", "position", "move", "seen"]
 
 class Error(Exception):
     """Something libswarf could not do; base of its own exceptions."""
@@ -232,6 +235,133 @@ class Stock:
     def cast(self, origins: Table, directions: Table) -> tuple[memoryview, memoryview]:
         """First hits of rays, (n, 3) tables in mm -> (distances: float64 view, in lengths of the direction, inf for
         none; normals: (n, 3) float32 view)."""
+
+@final
+class Camera:
+    """From where and how a scene is looked at, in mm and degrees; its methods change it in place. Places in a picture
+    are x to the right and y upwards, -1 .. 1 at its borders; its aspect is width / height. Parallel rays show what is
+    before and behind the eye. ValueError for a camera that sees nothing."""
+
+    def __new__(
+        cls,
+        eye: Point,
+        target: Point,
+        up: Point,
+        *,
+        perspective: bool = False,
+        height: float = 100.0,
+        fov: float = 30.0,
+    ) -> Camera: ...
+    @classmethod
+    def view(cls, name: View, box: Optional[Box], aspect: float = 1.0, *, perspective: bool = False) -> Camera:
+        """The whole of a box seen from one of its sides."""
+    def copy(self, /) -> Camera:
+        """A camera of its own that looks the same way."""
+    def fit(self, box: Optional[Box], aspect: float = 1.0) -> None:
+        """Show the whole box from the direction the camera looks in."""
+    def set_perspective(self, on: bool, /) -> None:
+        """Parallel rays instead of perspective or back; what lies at the target keeps its size."""
+    def turn(self, pivot: Point, axis: Point, angle_deg: float) -> None:
+        """Turn counter-clockwise about the line through ``pivot`` along ``axis``."""
+    def orbit(self, pivot: Point, right_deg: float, up_deg: float, *, turntable: bool = False) -> None:
+        """Turn about ``pivot`` as if the part were dragged to the right and upwards by these angles: about the
+        camera's own axes, or with ``turntable`` about the vertical and up to the poles."""
+    def pan(self, x: float, y: float, depth_of: Optional[Point] = None) -> None:
+        """Move so that what lies as deep as ``depth_of`` (the target) goes x to the right and y upwards, in heights
+        of the picture."""
+    def zoom(self, factor: float, toward: Optional[Point] = None) -> None:
+        """Show things ``factor`` times as large; the point ``toward`` (the target) stays at its place in the
+        picture."""
+    def ray(self, x: float, y: float, aspect: float = 1.0) -> Box:
+        """(origin, unit direction) of the ray through a place of the picture."""
+    def project(self, point: Point, aspect: float = 1.0) -> tuple[float, float, float]:
+        """(x, y, depth in mm) at which a point appears; x and y are NaN for what is behind a perspective eye."""
+    @property
+    def eye(self) -> tuple[float, float, float]:
+        """Where the camera stands, mm."""
+    @property
+    def target(self) -> tuple[float, float, float]:
+        """The point in the middle of the picture, mm."""
+    @property
+    def up(self) -> tuple[float, float, float]:
+        """What is upwards in the picture."""
+    @property
+    def perspective(self) -> bool:
+        """Whether rays meet in the eye; else they are parallel."""
+    @property
+    def height(self) -> float:
+        """Parallel rays: mm from the bottom to the top of the picture."""
+    @property
+    def fov(self) -> float:
+        """Perspective: vertical opening angle, degrees."""
+
+@final
+class Picture:
+    """A picture of a scene. Its views are read-only; those that were not asked for are None."""
+
+    def write(self, path: Path, /) -> None:
+        """Write the colours as PNG. OSError."""
+    @property
+    def width(self) -> int:
+        """Pixels."""
+    @property
+    def height(self) -> int:
+        """Pixels."""
+    @property
+    def rgba(self) -> Optional[memoryview]:
+        """(height * width, 4) uint8 view, sRGB, rows from the top."""
+    @property
+    def depth(self) -> Optional[memoryview]:
+        """(height, width) float32 view: mm along the view from the eye, inf where nothing is seen."""
+    @property
+    def normal(self) -> Optional[memoryview]:
+        """(height * width, 3) float32 view: unit normals, zero where nothing is seen."""
+    @property
+    def position(self) -> Optional[memoryview]:
+        """(height * width, 3) float64 view: points in mm, NaN where nothing is seen."""
+    @property
+    def move(self) -> Optional[memoryview]:
+        """(height, width) int32 view: the move that made the surface; -1: the stock as it was, or not known."""
+    @property
+    def seen(self) -> Optional[memoryview]:
+        """(height, width) uint8 view: what is seen, 0 nothing, 1 stock."""
+
+class Pick(NamedTuple):
+    """What is seen at a place of a picture."""
+
+    seen: str
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    move: int
+    depth: float
+
+@final
+class Scene:
+    """What is shown of a Stock; it follows the stock's changes. BusyError while another call is in the stock."""
+
+    def __new__(cls, stock: Stock) -> Scene: ...
+    def update(self, /) -> None:
+        """Take over what changed in the stock. Without it the next picture does."""
+    def render(
+        self,
+        camera: Camera,
+        width: int = 1280,
+        height: int = 960,
+        *,
+        samples: int = 3,
+        coarse: int = 1,
+        budget_ms: float = 0.0,
+        buffers: Sequence[Buffers] = ("rgba",),
+        colour: Optional[Sequence[float]] = None,
+        background: Optional[Sequence[float]] = None,
+        background_top: Optional[Sequence[float]] = None,
+        progress: Progress = None,
+    ) -> Picture:
+        """A Picture. At edges samples x samples rays per pixel (1 .. 4); one ray for coarse x coarse pixels (1 .. 16),
+        as many as it takes to be done in about budget_ms when that is given. buffers: what is wanted. Colours are
+        linear, 0 .. 1: RGB of the material, RGBA of the background."""
+    def pick(self, camera: Camera, x: float, y: float, aspect: float = 1.0) -> Optional[Pick]:
+        """The Pick at a place of the picture (x to the right and y upwards, -1 .. 1), or None where nothing is."""
 
 class Finding(NamedTuple):
     """Something the simulation noticed."""

@@ -21,6 +21,9 @@ typedef struct swarf_camera_frame {
 swarf_status swarf_camera_frame_make(const swarf_camera *camera, double aspect, swarf_camera_frame *out);
 
 /** Ray through (x, y) of the picture, each -1 .. 1, x to the right and y upwards. */
-void swarf_camera_ray(const swarf_camera_frame *frame, double x, double y, double origin[3], double direction[3]);
+void swarf_camera_frame_ray(const swarf_camera_frame *frame, double x, double y, double origin[3], double direction[3]);
+
+/** Place (x, y) and depth along the view at which a point appears; x and y NAN when it is not before the eye. */
+void swarf_camera_frame_project(const swarf_camera_frame *frame, const double point[3], double out[3]);
 
 #endif

@@ -1,197 +1,230 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Picture: camera rays in packets, Gooch shading, antialiasing.
+/* Picture: camera rays in packets, antialiasing, and what the caller wants to know of each pixel.
  *
- * Tiles of 32 x 32 pixels go to all cores. A tile and the pixels around it are traced with one ray per pixel, in
- * packets of 4 x 4 neighbours. Where a pixel and its eight neighbours see one smooth face, or all nothing, this is the
- * colour; the others (edges, steps, silhouettes) get n x n rays, a packet per pixel. Each pixel belongs to one tile and
- * sums its samples in a fixed order, so the picture is the same for any number of threads. Colours are summed
- * premultiplied in linear light and end as sRGB.
+ *   middle    one sight per grid square (a pixel, or coarse * coarse of them), rows from the top; packets of 4 x 4
+ *   rough     numbers of the squares where a square and its eight neighbours do not see one smooth face
+ *
+ * Each pass goes over rows or squares on all cores and writes only what is its own; samples are summed in a fixed
+ * order: the picture is the same for any number of threads. Colours are summed premultiplied in linear light.
  */
 #include "base/parallel.h"
 #include "base/status.h"
-#include "render/camera.h"
-#include "render/scene.h"
+#include "render/look.h"
+#include "render/shade.h"
+#include "render/vector.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-enum { TILE = 32, MARGIN_TILE = TILE + 2, PACKET_EDGE = 4, PIXELS_MAX = 16384, SAMPLES_MAX = 4 };
+enum { PACKET_EDGE = 4, PIXELS_MAX = 16384, SAMPLES_MAX = 4, COARSE_MAX = 16 };
 
-_Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a pixel are one packet");
+_Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a square are one packet");
 
 /* One face: neighbours' normals differ by at most 2.5 degrees, and each lies in the plane of the other to 1 in 20 of
  * their distance, so that steps of more than 1/20 pixel show. Larger values save rays and leave jagged edges. */
 static const float same_face_cosine = 0.999f;
 static const double same_face_slope = 0.05;
 
-/* A. Gooch, B. Gooch, P. Shirley, E. Cohen: A Non-Photorealistic Lighting Model for Automatic Technical Illustration,
- * SIGGRAPH 1998, section 4.2: blue and yellow shifts, and how much of the object's colour each side shows. */
-static const float gooch_blue = 0.4f, gooch_yellow = 0.4f, gooch_alpha = 0.2f, gooch_beta = 0.6f;
-/* Towards the light in the camera's right, up and backward: over the left shoulder. */
-static const double light_camera[3] = {-0.5, 0.7, 0.6};
+/* Squares that one piece of work takes: some 0.1 ms. */
+enum { PIECE = 256 };
 
 typedef struct picture {
-    const swarf_scene *scene;
     const swarf_picture_options *options;
-    swarf_camera_frame frame;
-    float light[3];
-    float cool[3], warm[3];
-    int32_t tiles_across;
-    uint8_t *rgba;
+    swarf_look look;
+    swarf_shading shading;
+    int32_t coarse;
+    int32_t width, height; /* of the grid */
+    swarf_sight *middle;
+    size_t *rough_before; /* rough squares in the rows before this one; height + 1 entries */
+    size_t *rough;
+    size_t rough_count;
+    float (*colour)[4]; /* of the squares */
 } picture;
 
-static void shade(const picture *p, const float normal[3], float out[4])
+/** Place -1 .. 1 of sample (i, j) of n * n of a grid square; squares at the right and lower rim may lie partly beyond
+ *  the picture. */
+static void place_of(const picture *p, int32_t x, int32_t y, int32_t i, int32_t j, int32_t n, double place[2])
 {
-    const float cosine = p->light[0] * normal[0] + p->light[1] * normal[1] + p->light[2] * normal[2];
-    const float warmth = 0.5f + 0.5f * cosine;
-    for (int channel = 0; channel < 3; channel++)
-        out[channel] = warmth * p->warm[channel] + (1 - warmth) * p->cool[channel];
-    out[3] = 1;
+    place[0] = 2 * (x + (i + 0.5) / n) * p->coarse / p->options->width - 1;
+    place[1] = 1 - 2 * (y + (j + 0.5) / n) * p->coarse / p->options->height;
 }
 
-/** Background at height 0 (bottom) .. 1, premultiplied. */
-static void backdrop(const picture *p, float height, float out[4])
+static swarf_status look_row(void *context, size_t row)
 {
-    const float *bottom = p->options->background, *top = p->options->background_top;
-    out[3] = bottom[3] + height * (top[3] - bottom[3]);
-    for (int channel = 0; channel < 3; channel++)
-        out[channel] = out[3] * (bottom[channel] + height * (top[channel] - bottom[channel]));
-}
-
-/** IEC 61966-2-1 transfer function to 8 bits. */
-static uint8_t to_srgb(float linear)
-{
-    const float x = fminf(fmaxf(linear, 0), 1);
-    const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1 / 2.4f) - 0.055f;
-    return (uint8_t)(encoded * 255 + 0.5f);
-}
-
-static void resolve(const float sum[4], float weight, uint8_t out[4])
-{
-    const float alpha = sum[3] * weight;
-    for (int channel = 0; channel < 3; channel++) out[channel] = alpha > 0 ? to_srgb(sum[channel] * weight / alpha) : 0;
-    out[3] = (uint8_t)(fminf(fmaxf(alpha, 0), 1) * 255 + 0.5f);
-}
-
-/* What one ray saw. */
-typedef struct sight {
-    float colour[4];
-    int hit;
-    float normal[3];
-    double point[3];
-} sight;
-
-/* Rays through samples `at` (x, y) of a picture with n samples per pixel edge. */
-static swarf_status look(const picture *p, int32_t n, const int32_t at[][2], unsigned count, sight out[])
-{
-    double origin[3 * SWARF_PACKET] = {0}, direction[3 * SWARF_PACKET] = {0}, distance[SWARF_PACKET];
-    float normal[3 * SWARF_PACKET], rise[SWARF_PACKET];
-    for (unsigned ray = 0; ray < count; ray++) {
-        const double u = (at[ray][0] + 0.5) / (p->options->width * n);
-        const double v = 1 - (at[ray][1] + 0.5) / (p->options->height * n);
-        swarf_camera_ray(&p->frame, 2 * u - 1, 2 * v - 1, origin + 3 * ray, direction + 3 * ray);
-        rise[ray] = (float)v;
-    }
-    SWARF_TRY(swarf_scene_trace(p->scene, origin, direction, count, distance, normal));
-    for (unsigned ray = 0; ray < count; ray++) {
-        sight *seen = &out[ray];
-        seen->hit = !isinf(distance[ray]);
-        if (!seen->hit) {
-            backdrop(p, rise[ray], seen->colour);
-            continue;
-        }
-        shade(p, normal + 3 * ray, seen->colour);
-        for (int axis = 0; axis < 3; axis++) {
-            seen->normal[axis] = normal[3 * ray + (unsigned)axis];
-            seen->point[axis] = origin[3 * ray + (unsigned)axis] + distance[ray] * direction[3 * ray + (unsigned)axis];
-        }
+    const picture *p = context;
+    const int32_t y0 = (int32_t)row * PACKET_EDGE;
+    for (int32_t x0 = 0; x0 < p->width; x0 += PACKET_EDGE) {
+        double place[SWARF_PACKET][2];
+        size_t at[SWARF_PACKET];
+        swarf_sight seen[SWARF_PACKET];
+        unsigned count = 0;
+        for (int32_t y = y0; y < y0 + PACKET_EDGE && y < p->height; y++)
+            for (int32_t x = x0; x < x0 + PACKET_EDGE && x < p->width; x++, count++) {
+                place_of(p, x, y, 0, 0, 1, place[count]);
+                at[count] = (size_t)y * (size_t)p->width + (size_t)x;
+            }
+        SWARF_TRY(swarf_look_through(&p->look, (const double(*)[2])place, count, seen));
+        for (unsigned ray = 0; ray < count; ray++) p->middle[at[ray]] = seen[ray];
     }
     return SWARF_OK;
 }
 
-static int is_same_face(const sight *a, const sight *b)
+static void point_of(const picture *p, int32_t x, int32_t y, double out[3])
 {
-    if (a->hit != b->hit) return 0;
-    if (!a->hit) return 1;
-    double cosine = 0, off_a = 0, off_b = 0, square = 0;
+    double place[2], direction[3];
+    place_of(p, x, y, 0, 0, 1, place);
+    swarf_look_ray(&p->look, place, out, direction);
+    const double distance = p->middle[(size_t)y * (size_t)p->width + (size_t)x].distance;
+    for (int axis = 0; axis < 3; axis++) out[axis] += distance * direction[axis];
+}
+
+static int is_same_face(const picture *p, int32_t x0, int32_t y0, int32_t x1, int32_t y1)
+{
+    const swarf_sight *a = &p->middle[(size_t)y0 * (size_t)p->width + (size_t)x0];
+    const swarf_sight *b = &p->middle[(size_t)y1 * (size_t)p->width + (size_t)x1];
+    if (a->seen != b->seen) return 0;
+    if (a->seen == SWARF_SEEN_NOTHING) return 1;
+    float cosine = 0;
+    for (int axis = 0; axis < 3; axis++) cosine += a->normal[axis] * b->normal[axis];
+    if (!(cosine > same_face_cosine)) return 0;
+    double from[3], to[3], off_a = 0, off_b = 0, square = 0;
+    point_of(p, x0, y0, from);
+    point_of(p, x1, y1, to);
     for (int axis = 0; axis < 3; axis++) {
-        const double step = b->point[axis] - a->point[axis];
-        cosine += (double)a->normal[axis] * b->normal[axis];
+        const double step = to[axis] - from[axis];
         off_a += step * a->normal[axis];
         off_b += step * b->normal[axis];
         square += step * step;
     }
     const double most = same_face_slope * same_face_slope * square;
-    return cosine > same_face_cosine && off_a * off_a <= most && off_b * off_b <= most;
+    return off_a * off_a <= most && off_b * off_b <= most;
 }
 
-static int is_smooth(const sight *middle)
+static int is_rough(const picture *p, int32_t x0, int32_t y0)
 {
-    for (int y = -1; y <= 1; y++)
-        for (int x = -1; x <= 1; x++)
-            if (!is_same_face(middle, middle + y * MARGIN_TILE + x)) return 0;
-    return 1;
+    for (int32_t y = y0 - 1; y <= y0 + 1; y++)
+        for (int32_t x = x0 - 1; x <= x0 + 1; x++)
+            if (x >= 0 && y >= 0 && x < p->width && y < p->height && !is_same_face(p, x0, y0, x, y)) return 1;
+    return 0;
 }
 
-/* One ray per pixel of a tile and of the ring around it, which may lie outside the picture. */
-static swarf_status look_once(const picture *p, int32_t x0, int32_t y0, sight seen[MARGIN_TILE * MARGIN_TILE])
-{
-    for (int32_t by = 0; by < MARGIN_TILE; by += PACKET_EDGE) {
-        for (int32_t bx = 0; bx < MARGIN_TILE; bx += PACKET_EDGE) {
-            int32_t at[SWARF_PACKET][2], place[SWARF_PACKET];
-            sight packet[SWARF_PACKET];
-            unsigned count = 0;
-            for (int32_t y = by; y < by + PACKET_EDGE && y < MARGIN_TILE; y++)
-                for (int32_t x = bx; x < bx + PACKET_EDGE && x < MARGIN_TILE; x++, count++) {
-                    at[count][0] = x0 + x - 1;
-                    at[count][1] = y0 + y - 1;
-                    place[count] = y * MARGIN_TILE + x;
-                }
-            SWARF_TRY(look(p, 1, (const int32_t(*)[2])at, count, packet));
-            for (unsigned ray = 0; ray < count; ray++) seen[place[ray]] = packet[ray];
-        }
-    }
-    return SWARF_OK;
-}
-
-static swarf_status sum_samples(const picture *p, int32_t x, int32_t y, float sum[4])
-{
-    const int32_t n = p->options->samples;
-    int32_t at[SWARF_PACKET][2];
-    sight packet[SWARF_PACKET];
-    unsigned count = 0;
-    for (int32_t sub = 0; sub < n * n; sub++, count++) {
-        at[count][0] = x * n + sub % n;
-        at[count][1] = y * n + sub / n;
-    }
-    SWARF_TRY(look(p, n, (const int32_t(*)[2])at, count, packet));
-    for (int channel = 0; channel < 4; channel++) sum[channel] = 0;
-    for (unsigned ray = 0; ray < count; ray++)
-        for (int channel = 0; channel < 4; channel++) sum[channel] += packet[ray].colour[channel];
-    return SWARF_OK;
-}
-
-static swarf_status draw_tile(void *context, size_t index)
+/** Shade the middles of a row, and count the rough squares in it. */
+static swarf_status shade_row(void *context, size_t row)
 {
     const picture *p = context;
-    const int32_t n = p->options->samples, width = p->options->width, height = p->options->height;
-    const int32_t x0 = (int32_t)(index % (size_t)p->tiles_across) * TILE;
-    const int32_t y0 = (int32_t)(index / (size_t)p->tiles_across) * TILE;
-    sight seen[MARGIN_TILE * MARGIN_TILE];
-    SWARF_TRY(look_once(p, x0, y0, seen));
-    for (int32_t y = y0; y < y0 + TILE && y < height; y++) {
-        for (int32_t x = x0; x < x0 + TILE && x < width; x++) {
-            const sight *middle = &seen[(y - y0 + 1) * MARGIN_TILE + (x - x0 + 1)];
-            uint8_t *pixel = p->rgba + 4 * ((size_t)y * (size_t)width + (size_t)x);
-            float sum[4];
-            if (n == 1 || is_smooth(middle)) {
-                resolve(middle->colour, 1, pixel);
-                continue;
-            }
-            SWARF_TRY(sum_samples(p, x, y, sum));
-            resolve(sum, 1 / (float)(n * n), pixel);
+    size_t rough = 0;
+    for (int32_t x = 0; x < p->width; x++) {
+        const size_t at = row * (size_t)p->width + (size_t)x;
+        double place[2];
+        place_of(p, x, (int32_t)row, 0, 0, 1, place);
+        swarf_shade(&p->shading, &p->middle[at], 0.5 + 0.5 * place[1], p->colour[at]);
+        if (p->options->samples == 1 || !is_rough(p, x, (int32_t)row)) continue;
+        p->colour[at][3] = -1; /* until its samples are there */
+        rough++;
+    }
+    p->rough_before[row + 1] = rough;
+    return SWARF_OK;
+}
+
+static swarf_status list_row(void *context, size_t row)
+{
+    const picture *p = context;
+    size_t number = p->rough_before[row];
+    for (size_t at = row * (size_t)p->width; at < (row + 1) * (size_t)p->width; at++)
+        if (p->colour[at][3] < 0) p->rough[number++] = at;
+    return SWARF_OK;
+}
+
+static swarf_status sample_some(void *context, size_t index)
+{
+    const picture *p = context;
+    const int32_t n = p->options->samples;
+    for (size_t number = index * PIECE; number < (index + 1) * PIECE && number < p->rough_count; number++) {
+        const size_t at = p->rough[number];
+        const int32_t x = (int32_t)(at % (size_t)p->width), y = (int32_t)(at / (size_t)p->width);
+        double place[SWARF_PACKET][2];
+        swarf_sight seen[SWARF_PACKET];
+        float *sum = p->colour[at];
+        for (int32_t sub = 0; sub < n * n; sub++) place_of(p, x, y, sub % n, sub / n, n, place[sub]);
+        SWARF_TRY(swarf_look_through(&p->look, (const double(*)[2])place, (unsigned)(n * n), seen));
+        memset(sum, 0, sizeof *p->colour);
+        for (int32_t sub = 0; sub < n * n; sub++) {
+            float one[4];
+            swarf_shade(&p->shading, &seen[sub], 0.5 + 0.5 * place[sub][1], one);
+            for (int channel = 0; channel < 4; channel++) sum[channel] += one[channel] / (float)(n * n);
         }
+    }
+    return SWARF_OK;
+}
+
+/** The parts of `progress` by what they cost. */
+static const double looked = 0.5, shaded = 0.6;
+
+static swarf_status draw(picture *p, const swarf_progress *progress)
+{
+    const size_t rows = (size_t)p->height;
+    SWARF_TRY(swarf_parallel_for((rows + PACKET_EDGE - 1) / PACKET_EDGE, look_row, p, progress, 0, looked));
+    SWARF_TRY(swarf_parallel_for(rows, shade_row, p, progress, looked, shaded));
+    for (size_t row = 0; row < rows; row++) p->rough_before[row + 1] += p->rough_before[row];
+    p->rough_count = p->rough_before[rows];
+    if (p->rough_count) {
+        p->rough = malloc(p->rough_count * sizeof *p->rough);
+        if (!p->rough) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
+        SWARF_TRY(swarf_parallel_for(rows, list_row, p, NULL, 0, 1));
+        SWARF_TRY(swarf_parallel_for((p->rough_count + PIECE - 1) / PIECE, sample_some, p, progress, shaded, 1));
+    }
+    return SWARF_OK;
+}
+
+typedef struct output {
+    const picture *picture;
+    const swarf_picture_buffers *to;
+} output;
+
+/** Colour of a pixel between the middles of coarse squares. */
+static void blend(const picture *p, int32_t x, int32_t y, float out[4])
+{
+    const double u = fmax((x + 0.5) / p->coarse - 0.5, 0), v = fmax((y + 0.5) / p->coarse - 0.5, 0);
+    const int32_t x0 = (int32_t)u, y0 = (int32_t)v;
+    const int32_t x1 = x0 + 1 < p->width ? x0 + 1 : x0, y1 = y0 + 1 < p->height ? y0 + 1 : y0;
+    const float fx = (float)(u - x0), fy = (float)(v - y0);
+    const float *c00 = p->colour[(size_t)y0 * (size_t)p->width + (size_t)x0];
+    const float *c10 = p->colour[(size_t)y0 * (size_t)p->width + (size_t)x1];
+    const float *c01 = p->colour[(size_t)y1 * (size_t)p->width + (size_t)x0];
+    const float *c11 = p->colour[(size_t)y1 * (size_t)p->width + (size_t)x1];
+    for (int channel = 0; channel < 4; channel++)
+        out[channel] = (1 - fy) * ((1 - fx) * c00[channel] + fx * c10[channel]) +
+                       fy * ((1 - fx) * c01[channel] + fx * c11[channel]);
+}
+
+static swarf_status put_row(void *context, size_t row)
+{
+    const output *o = context;
+    const picture *p = o->picture;
+    const int32_t width = p->options->width, grid_y = (int32_t)row / p->coarse;
+    for (int32_t x = 0; x < width; x++) {
+        const size_t at = row * (size_t)width + (size_t)x;
+        const int32_t grid_x = x / p->coarse;
+        const size_t square = (size_t)grid_y * (size_t)p->width + (size_t)grid_x;
+        const swarf_sight *sight = &p->middle[square];
+        if (o->to->rgba) {
+            float colour[4];
+            memcpy(colour, p->colour[square], sizeof colour);
+            if (p->coarse > 1) blend(p, x, (int32_t)row, colour);
+            swarf_shade_resolve(colour, 1, o->to->rgba + 4 * at);
+        }
+        if (o->to->seen) o->to->seen[at] = (uint8_t)sight->seen;
+        if (o->to->move) o->to->move[at] = sight->move;
+        if (o->to->normal) memcpy(o->to->normal + 3 * at, sight->normal, sizeof sight->normal);
+        if (!o->to->depth && !o->to->position) continue;
+        double point[3] = {NAN, NAN, NAN}, arm[3];
+        if (sight->seen != SWARF_SEEN_NOTHING) point_of(p, grid_x, grid_y, point);
+        for (int axis = 0; axis < 3; axis++) arm[axis] = point[axis] - p->look.frame.eye[axis];
+        if (o->to->position) memcpy(o->to->position + 3 * at, point, sizeof point);
+        if (o->to->depth)
+            o->to->depth[at] =
+                sight->seen == SWARF_SEEN_NOTHING ? INFINITY : (float)vector_dot(arm, p->look.frame.forward);
     }
     return SWARF_OK;
 }
@@ -203,6 +236,7 @@ swarf_picture_options swarf_picture_options_default(void)
         .width = 1280,
         .height = 960,
         .samples = 3,
+        .coarse = 1,
         .colour = {0.62f, 0.62f, 0.64f},
         .background = {0.80f, 0.82f, 0.85f, 1},
         .background_top = {0.30f, 0.36f, 0.44f, 1},
@@ -216,6 +250,9 @@ static swarf_status check_options(const swarf_picture_options *o)
                   "picture: %d x %d pixels is not in 1 .. %d", (int)o->width, (int)o->height, (int)PIXELS_MAX);
     SWARF_REQUIRE(o->samples >= 1 && o->samples <= SAMPLES_MAX, "picture: %d samples per edge is not in 1 .. %d",
                   (int)o->samples, (int)SAMPLES_MAX);
+    SWARF_REQUIRE(o->coarse >= 1 && o->coarse <= COARSE_MAX, "picture: %d pixels per ray is not in 1 .. %d",
+                  (int)o->coarse, (int)COARSE_MAX);
+    SWARF_REQUIRE(isfinite(o->budget_ms) && o->budget_ms >= 0, "picture: a budget of %g ms", o->budget_ms);
     for (int channel = 0; channel < 4; channel++) {
         const float colour = channel < 3 ? o->colour[channel] : 0;
         const float low = o->background[channel], high = o->background_top[channel];
@@ -225,33 +262,100 @@ static swarf_status check_options(const swarf_picture_options *o)
     return SWARF_OK;
 }
 
+static double now_ms(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+}
+
+/** Pixels per ray, along each axis, with which the picture should take the time it may. */
+static int32_t choose_coarse(const swarf_scene *scene, const swarf_picture_options *options)
+{
+    int32_t coarse = options->coarse;
+    if (options->budget_ms > 0) {
+        const double rays = options->budget_ms / swarf_scene_ray_ms(scene);
+        while (coarse < COARSE_MAX && (double)options->width * options->height > rays * coarse * coarse) coarse++;
+    }
+    return coarse;
+}
+
+/** With the scene entered. */
+static swarf_status render(swarf_scene *scene, const swarf_camera *camera, picture *p, const swarf_progress *progress,
+                           const swarf_picture_buffers *out)
+{
+    const swarf_picture_options *options = p->options;
+    const double started = now_ms();
+    SWARF_TRY(swarf_look_make(scene, camera, (double)options->width / options->height, &p->look));
+    swarf_shading_make(&p->look, options, &p->shading);
+    p->coarse = choose_coarse(scene, options);
+    p->width = (options->width + p->coarse - 1) / p->coarse;
+    p->height = (options->height + p->coarse - 1) / p->coarse;
+    const size_t squares = (size_t)p->width * (size_t)p->height;
+    p->middle = malloc(squares * sizeof *p->middle);
+    p->colour = malloc(squares * sizeof *p->colour);
+    p->rough_before = calloc((size_t)p->height + 1, sizeof *p->rough_before);
+    if (!p->middle || !p->colour || !p->rough_before)
+        return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for %d x %d pixels", (int)options->width,
+                          (int)options->height);
+    SWARF_TRY(draw(p, progress));
+    output o = {p, out};
+    SWARF_TRY(swarf_parallel_for((size_t)options->height, put_row, &o, NULL, 0, 1));
+    swarf_scene_note_ray_ms(scene, (now_ms() - started) / (double)squares);
+    return SWARF_OK;
+}
+
+swarf_status swarf_scene_render(swarf_scene *scene, const swarf_camera *camera, const swarf_picture_options *options,
+                                const swarf_progress *progress, const swarf_picture_buffers *out)
+{
+    SWARF_REQUIRE(scene && camera && options && out, "picture: scene, camera, options or output missing");
+    SWARF_REQUIRE(out->size == sizeof *out, "picture: buffers of another version");
+    SWARF_TRY(check_options(options));
+    picture p = {.options = options};
+    SWARF_TRY(swarf_scene_enter(scene));
+    const swarf_status status = render(scene, camera, &p, progress, out);
+    swarf_scene_leave(scene);
+    free(p.middle);
+    free(p.colour);
+    free(p.rough_before);
+    free(p.rough);
+    return status;
+}
+
 swarf_status swarf_scene_picture(swarf_scene *scene, const swarf_camera *camera, const swarf_picture_options *options,
                                  const swarf_progress *progress, uint8_t *rgba)
 {
-    SWARF_REQUIRE(scene && camera && options && rgba, "picture: scene, camera, options or pixels missing");
-    SWARF_TRY(check_options(options));
-    picture p = {.scene = scene, .options = options};
-    SWARF_TRY(swarf_camera_frame_make(camera, (double)options->width / options->height, &p.frame));
-    double length = 0;
-    for (int axis = 0; axis < 3; axis++) length += light_camera[axis] * light_camera[axis];
-    for (int axis = 0; axis < 3; axis++) {
-        p.light[axis] = (float)((light_camera[0] * p.frame.right[axis] + light_camera[1] * p.frame.up[axis] -
-                                 light_camera[2] * p.frame.forward[axis]) /
-                                sqrt(length));
-        p.cool[axis] = gooch_alpha * options->colour[axis] + (axis == 2 ? gooch_blue : 0);
-        p.warm[axis] = gooch_beta * options->colour[axis] + (axis == 2 ? 0 : gooch_yellow);
+    SWARF_REQUIRE(rgba, "picture: pixels missing");
+    const swarf_picture_buffers out = {.size = sizeof out, .rgba = rgba};
+    return swarf_scene_render(scene, camera, options, progress, &out);
+}
+
+swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, double aspect, double x, double y,
+                              swarf_pick *out)
+{
+    SWARF_REQUIRE(scene && camera && out, "pick: scene, camera or output missing");
+    SWARF_REQUIRE(isfinite(x) && isfinite(y), "pick: the place in the picture is not finite");
+    SWARF_TRY(swarf_scene_enter(scene));
+    swarf_look look;
+    swarf_sight sight;
+    const double place[1][2] = {{x, y}};
+    swarf_status status = swarf_look_make(scene, camera, aspect, &look);
+    if (status == SWARF_OK) status = swarf_look_through(&look, place, 1, &sight);
+    swarf_scene_leave(scene);
+    SWARF_TRY(status);
+    swarf_pick pick = {.seen = sight.seen, .move = -1, .depth = NAN};
+    for (int axis = 0; axis < 3; axis++) pick.point[axis] = pick.normal[axis] = NAN;
+    if (sight.seen != SWARF_SEEN_NOTHING) {
+        double direction[3], arm[3];
+        swarf_look_ray(&look, place[0], pick.point, direction);
+        for (int axis = 0; axis < 3; axis++) {
+            pick.point[axis] += sight.distance * direction[axis];
+            pick.normal[axis] = sight.normal[axis];
+            arm[axis] = pick.point[axis] - look.frame.eye[axis];
+        }
+        pick.move = sight.move;
+        pick.depth = vector_dot(arm, look.frame.forward);
     }
-    p.tiles_across = (options->width + TILE - 1) / TILE;
-    const size_t tiles = (size_t)p.tiles_across * (size_t)((options->height + TILE - 1) / TILE);
-    const size_t bytes = 4 * (size_t)options->width * (size_t)options->height;
-    p.rgba = malloc(bytes); /* apart, so that a cancelled picture leaves the caller's pixels alone */
-    if (!p.rgba) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for %zu bytes of pixels", bytes);
-    swarf_status status = swarf_scene_enter(scene);
-    if (status == SWARF_OK) {
-        status = swarf_parallel_for(tiles, draw_tile, &p, progress, 0, 1);
-        swarf_scene_leave(scene);
-    }
-    if (status == SWARF_OK) memcpy(rgba, p.rgba, bytes);
-    free(p.rgba);
-    return status;
+    *out = pick;
+    return SWARF_OK;
 }

@@ -26,8 +26,12 @@ struct swarf_scene {
     size_t block_count;
     swarf_accel *accel;
     double box_lo[3], box_hi[3];
+    double ray_ms; /* that a ray of the last picture took, with all that belongs to it; 0: no picture yet */
     float outside[SWARF_LEAF_SIZE], inside[SWARF_LEAF_SIZE]; /* what the blocks see of tiles */
 };
+
+/* Of a ray before the first picture has told: a small computer's. */
+static const double first_ray_ms = 3e-4;
 
 /* Leaves that one piece of work makes blocks of: some 0.2 ms. */
 enum { CHUNK = 256 };
@@ -171,6 +175,11 @@ static swarf_status build(swarf_scene *scene)
 {
     swarf_leaf *leaves = NULL;
     size_t count = 0;
+    swarf_accel_destroy(scene->accel);
+    free(scene->blocks);
+    scene->accel = NULL;
+    scene->blocks = NULL;
+    scene->block_count = 0;
     scene->layout = *swarf_tree_get_layout(scene->stock->tree);
     for (int place = 0; place < SWARF_LEAF_SIZE; place++) {
         scene->outside[place] = scene->layout.background;
@@ -211,6 +220,15 @@ swarf_status swarf_scene_create(swarf_stock *stock, swarf_scene **out)
     return SWARF_OK;
 }
 
+swarf_status swarf_scene_update(swarf_scene *scene)
+{
+    SWARF_REQUIRE(scene, "scene: missing");
+    SWARF_TRY(swarf_stock_enter_read(scene->stock));
+    const swarf_status status = build(scene);
+    swarf_stock_leave(scene->stock);
+    return status;
+}
+
 void swarf_scene_destroy(swarf_scene *scene)
 {
     if (!scene) return;
@@ -227,6 +245,24 @@ swarf_status swarf_scene_enter(const swarf_scene *scene)
 void swarf_scene_leave(const swarf_scene *scene)
 {
     swarf_stock_leave(scene->stock);
+}
+
+void swarf_scene_box(const swarf_scene *scene, swarf_box *out)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        out->lo[axis] = scene->block_count ? scene->layout.origin[axis] + scene->layout.voxel * scene->box_lo[axis] : 1;
+        out->hi[axis] = scene->block_count ? scene->layout.origin[axis] + scene->layout.voxel * scene->box_hi[axis] : 0;
+    }
+}
+
+double swarf_scene_ray_ms(const swarf_scene *scene)
+{
+    return scene->ray_ms > 0 ? scene->ray_ms : first_ray_ms;
+}
+
+void swarf_scene_note_ray_ms(swarf_scene *scene, double ray_ms)
+{
+    scene->ray_ms = ray_ms;
 }
 
 /** Whether a point (in voxels) lies in material. */

@@ -17,4 +17,11 @@ swarf_status swarf_scene_trace(const swarf_scene *scene, const double *origin, c
 swarf_status swarf_scene_enter(const swarf_scene *scene);
 void swarf_scene_leave(const swarf_scene *scene);
 
+/** Box of the surface in mm, empty when there is none. */
+void swarf_scene_box(const swarf_scene *scene, swarf_box *out);
+
+/** Milliseconds that a ray of a picture takes, from what the pictures before took. */
+double swarf_scene_ray_ms(const swarf_scene *scene);
+void swarf_scene_note_ray_ms(swarf_scene *scene, double ray_ms);
+
 #endif

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cameras, pictures and picks: what they show is where it is."""
+import math
+
+import pytest
+import swarf
+
+
+@pytest.fixture(scope="module")
+def stock():
+    return swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
+
+
+def camera_of(stock, perspective=False):
+    return swarf.Camera.view("isometric", stock.bounding_box(), 1.5, perspective=perspective)
+
+
+@pytest.mark.parametrize("perspective", [False, True])
+def test_zooming_to_a_point_keeps_its_place(stock, perspective):
+    camera = camera_of(stock, perspective)
+    point = (50, 5, 0)
+    x, y, _ = camera.project(point, 1.5)
+    before = camera.project((40, 5, 0), 1.5)
+    camera.zoom(3, point)
+    assert camera.project(point, 1.5)[:2] == pytest.approx((x, y), abs=1e-9)
+    after = camera.project((40, 5, 0), 1.5)
+    assert math.dist(after[:2], (x, y)) > 2 * math.dist(before[:2], (x, y))
+
+
+@pytest.mark.parametrize("turntable", [False, True])
+def test_orbit_keeps_the_pivot_and_its_distance(stock, turntable):
+    camera = camera_of(stock, True)
+    pivot = (30, 20, -2)
+    before = camera.project(pivot, 1.5)
+    for _ in range(50):
+        camera.orbit(pivot, 13, 7, turntable=turntable)
+        assert camera.project(pivot, 1.5) == pytest.approx(before, abs=1e-4 if turntable else 1e-9)
+    if turntable:
+        assert camera.up == (0, 0, 1)
+
+
+def test_dragging_to_the_right_moves_the_near_side_to_the_right(stock):
+    for turntable in (False, True):
+        camera = swarf.Camera.view("front", stock.bounding_box())
+        near = (30, 0, -5)
+        x, y, _ = camera.project(near)
+        camera.orbit(camera.target, 10, 10, turntable=turntable)
+        moved = camera.project(near)
+        assert moved[0] > x + 0.01 and moved[1] > y + 0.01
+
+
+def test_pan_moves_by_heights_of_the_picture(stock):
+    for perspective in (False, True):
+        camera = camera_of(stock, perspective)
+        point = (10, 10, -3)
+        x, y, _ = camera.project(point, 1.5)
+        camera.pan(0.25, -0.1, point)
+        assert camera.project(point, 1.5)[:2] == pytest.approx((x + 0.5 / 1.5, y - 0.2), abs=1e-9)
+
+
+def test_perspective_and_back_keeps_the_size_at_the_target(stock):
+    camera = camera_of(stock)
+    height = camera.height
+    camera.set_perspective(True)
+    camera.set_perspective(False)
+    assert camera.height == pytest.approx(height)
+
+
+def test_buffers_agree_with_the_camera_and_with_picks(stock):
+    scene = swarf.Scene(stock)
+    camera = swarf.Camera.view("top", stock.bounding_box(), 1.5)
+    picture = scene.render(camera, 90, 60, buffers=("rgba", "depth", "normal", "position", "move", "seen"))
+    assert (picture.width, picture.height) == (90, 60)
+    middle = 30 * 90 + 45
+    assert picture.seen[30, 45] == 1 and picture.move[30, 45] == -1 and picture.seen[0, 0] == 0
+    assert picture.depth[0, 0] == math.inf and math.isnan(picture.position[0, 0])
+    assert picture.position[middle, 2] == pytest.approx(0, abs=1e-6)
+    assert picture.normal[middle, 2] == pytest.approx(1)
+    place = ((45 + 0.5) / 45 - 1, 1 - (30 + 0.5) / 30)
+    pick = scene.pick(camera, *place, 1.5)
+    assert pick.seen == "stock" and pick.point == pytest.approx([picture.position[middle, i] for i in range(3)])
+    assert pick.depth == pytest.approx(picture.depth[30, 45])
+    assert camera.project(pick.point, 1.5)[:2] == pytest.approx(place, abs=1e-9)
+    assert scene.pick(camera, -1, 1, 1.5) is None
+    assert scene.render(camera, 9, 6, buffers=("seen",)).rgba is None
+
+
+def test_coarse_pictures_have_the_size_asked_for(stock):
+    scene = swarf.Scene(stock)
+    camera = swarf.Camera.view("top", stock.bounding_box(), 1.5)
+    for coarse in (2, 7, 16):
+        assert scene.render(camera, 91, 61, coarse=coarse).rgba.shape == (91 * 61, 4)
+    assert scene.render(camera, 91, 61, budget_ms=1e-3).rgba.shape == (91 * 61, 4)
+
+
+def test_parallel_rays_see_what_is_behind_the_eye(stock):
+    scene = swarf.Scene(stock)
+    camera = swarf.Camera((30, 20, -5), (30, 20, -6), (0, 1, 0), height=60)
+    assert scene.pick(camera, 0, 0).point == pytest.approx((30, 20, 0), abs=1e-6)
+
+
+def test_a_scene_follows_its_stock():
+    stock = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
+    scene = swarf.Scene(stock)
+    camera = swarf.Camera.view("top", stock.bounding_box())
+    program = swarf.Program(start=(30, 20, 5))
+    program.add_operation("hole")
+    program.set_section(tool=1)
+    program.add_line((30, 20, -4), feed_mm_min=100)
+    stock.cut(swarf.Cutter("flat:d=10,l=20"), program)
+    scene.update()
+    assert scene.pick(camera, 0, 0).point[2] == pytest.approx(-4, abs=1e-5)
+
+
+def test_refusals(stock):
+    scene = swarf.Scene(stock)
+    camera = camera_of(stock)
+    with pytest.raises(ValueError, match="same point"):
+        swarf.Camera((1, 2, 3), (1, 2, 3), (0, 0, 1))
+    with pytest.raises(ValueError, match="up is along"):
+        swarf.Camera((1, 2, 3), (1, 2, 4), (0, 0, 1))
+    with pytest.raises(ValueError, match="none of isometric"):
+        swarf.Camera.view("inside", None)
+    with pytest.raises(ValueError, match="zoom"):
+        camera.zoom(0)
+    with pytest.raises(ValueError, match="pixels per ray"):
+        scene.render(camera, coarse=17)
+    with pytest.raises(ValueError, match="buffers"):
+        scene.render(camera, 8, 8, buffers=("colour",))
+    with pytest.raises(ValueError, match="rgba"):
+        scene.render(camera, 8, 8, buffers=("depth",)).write("never.png")
+    with pytest.raises(swarf.Cancelled):
+        scene.render(camera, progress=lambda fraction: True)
