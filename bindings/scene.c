@@ -227,7 +227,7 @@ static PyObject *scene_render(PyObject *self, PyObject *args, PyObject *keywords
     options.height = height;
     options.samples = samples;
     options.coarse = coarse;
-    PyObject *only_colours = buffers ? Py_NewRef(buffers) : Py_BuildValue("(s)", "rgba");
+    PyObject *only_colours = buffers && buffers != Py_None ? Py_NewRef(buffers) : Py_BuildValue("(s)", "rgba");
     if (!only_colours) return NULL;
     swarf_picture_buffers out;
     picture_object *picture = picture_create(state, &options, only_colours, &out);
@@ -292,10 +292,11 @@ static PyMethodDef scene_methods[] = {
     {"update", scene_update, METH_NOARGS,
      "update($self, /)\n--\n\nTake over what changed in the stock. Without it the next picture does."},
     {"render", WITH_KEYWORDS(scene_render), METH_VARARGS | METH_KEYWORDS,
-     "render($self, camera, width=1280, height=960, *, samples=3, coarse=1, budget_ms=0.0, buffers=('rgba',), "
+     "render($self, camera, width=1280, height=960, *, samples=3, coarse=1, budget_ms=0.0, buffers=None, "
      "colour=None, background=None, background_top=None, progress=None)\n--\n\n"
      "A Picture. At edges samples x samples rays per pixel (1 .. 4); one ray for coarse x coarse pixels (1 .. 16), as\n"
-     "many as it takes to be done in about budget_ms when that is given. buffers: what is wanted of rgba, depth,\n"
+     "many as it takes to be done in about budget_ms when that is given. buffers: what is wanted of rgba (None), "
+     "depth,\n"
      "normal, position, move and seen. Colours are linear, 0 .. 1: RGB of the material, RGBA of the background."},
     {"pick", WITH_KEYWORDS(scene_pick), METH_VARARGS | METH_KEYWORDS,
      "pick($self, camera, x, y, aspect=1.0)\n--\n\n"

@@ -351,14 +351,14 @@ class Scene:
         samples: int = 3,
         coarse: int = 1,
         budget_ms: float = 0.0,
-        buffers: Sequence[Buffers] = ("rgba",),
+        buffers: Optional[Sequence[Buffers]] = None,
         colour: Optional[Sequence[float]] = None,
         background: Optional[Sequence[float]] = None,
         background_top: Optional[Sequence[float]] = None,
         progress: Progress = None,
     ) -> Picture:
         """A Picture. At edges samples x samples rays per pixel (1 .. 4); one ray for coarse x coarse pixels (1 .. 16),
-        as many as it takes to be done in about budget_ms when that is given. buffers: what is wanted. Colours are
+        as many as it takes to be done in about budget_ms when that is given. buffers: what is wanted (None: rgba). Colours are
         linear, 0 .. 1: RGB of the material, RGBA of the background."""
     def pick(self, camera: Camera, x: float, y: float, aspect: float = 1.0) -> Optional[Pick]:
         """The Pick at a place of the picture (x to the right and y upwards, -1 .. 1), or None where nothing is."""
