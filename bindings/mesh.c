@@ -255,8 +255,10 @@ PyObject *compare_volume(PyObject *module, PyObject *args, PyObject *keywords)
     if (call_begin(&call, progress)) return NULL;
     const swarf_triangles triangles = swarf_mesh_triangles(handle_of(design));
     swarf_comparison found;
-    const swarf_status status =
-        swarf_compare_volume(((stock_object *)stock)->handle, &triangles, &call.progress, &found);
+    swarf_solid *solid = NULL;
+    swarf_status status = swarf_solid_create(&triangles, NULL, &solid);
+    if (!status) status = swarf_compare_volume(((stock_object *)stock)->handle, solid, &call.progress, &found);
+    swarf_solid_release(solid);
     if (call_end(&call, state, status)) return NULL;
     const double values[] = {found.design_mm3, found.stock_mm3, found.excess_mm3, found.gouge_mm3};
     PyObject *result = PyStructSequence_New(state->comparison);

@@ -15,11 +15,13 @@ static void check_box(double lo, double hi, double excess, double gouge)
     shape design = {0};
     shape_box(&design, low, high);
     const swarf_triangles triangles = shape_view(&design);
+    swarf_solid *solid = NULL;
+    CHECK_OK(swarf_solid_create(&triangles, NULL, &solid));
     swarf_comparison result;
     uint64_t before, after;
     if (CHECK_OK(swarf_stock_create_box(&bounds, &options, &stock))) {
         CHECK_OK(swarf_stock_hash(stock, &before));
-        if (CHECK_OK(swarf_compare_volume(stock, &triangles, NULL, &result))) {
+        if (CHECK_OK(swarf_compare_volume(stock, solid, NULL, &result))) {
             CHECK_NEAR(result.design_mm3, 100 * (hi - lo), 1e-3);
             CHECK_NEAR(result.stock_mm3, 1000, 0.1);
             CHECK_NEAR(result.excess_mm3, excess, 0.5);
@@ -28,6 +30,7 @@ static void check_box(double lo, double hi, double excess, double gouge)
         CHECK_OK(swarf_stock_hash(stock, &after));
         CHECK(before == after);
     }
+    swarf_solid_release(solid);
     swarf_stock_destroy(stock);
     shape_free(&design);
 }
@@ -42,13 +45,17 @@ static void check_refusals(void)
     shape design = {0};
     shape_box(&design, low, high);
     swarf_triangles triangles = shape_view(&design);
+    swarf_solid *solid = NULL;
     triangles.triangle_count--;
+    CHECK_FAILS(swarf_solid_create(&triangles, NULL, &solid), SWARF_ERROR_GEOMETRY, "open");
+    triangles.triangle_count++;
+    CHECK_OK(swarf_solid_create(&triangles, NULL, &solid));
     swarf_comparison result;
     if (CHECK_OK(swarf_stock_create_box(&bounds, &options, &stock))) {
-        CHECK_FAILS(swarf_compare_volume(stock, &triangles, NULL, &result), SWARF_ERROR_GEOMETRY, "open");
         CHECK_FAILS(swarf_compare_volume(stock, NULL, NULL, &result), SWARF_ERROR_ARGUMENT, NULL);
-        CHECK_FAILS(swarf_compare_volume(NULL, &triangles, NULL, &result), SWARF_ERROR_ARGUMENT, NULL);
+        CHECK_FAILS(swarf_compare_volume(NULL, solid, NULL, &result), SWARF_ERROR_ARGUMENT, NULL);
     }
+    swarf_solid_release(solid);
     swarf_stock_destroy(stock);
     shape_free(&design);
 }

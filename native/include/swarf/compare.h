@@ -3,6 +3,7 @@
 #ifndef SWARF_COMPARE_H
 #define SWARF_COMPARE_H
 
+#include "solid.h"
 #include "stock.h"
 
 #ifdef __cplusplus
@@ -17,9 +18,10 @@ typedef struct swarf_comparison {
     double gouge_mm3;  /**< design outside the stock: material missing */
 } swarf_comparison;
 
-/** Compare by volume: the design (closed triangles) is sampled on the stock's own voxels and both differences are
- *  integrated. The stock is unchanged. SWARF_ERROR_GEOMETRY as for swarf_stock_create_mesh(). */
-SWARF_API swarf_status swarf_compare_volume(swarf_stock *stock, const swarf_triangles *design,
+/** Compare by volume: the design's exact distance is taken at the stock's own voxels and both differences are
+ *  integrated. A voxel of both counts by how much of it each fills and by the angle between their surfaces, so that
+ *  surfaces that coincide leave nothing over. The stock is unchanged. SWARF_ERROR_BUSY as all calls on a stock. */
+SWARF_API swarf_status swarf_compare_volume(swarf_stock *stock, const swarf_solid *design,
                                             const swarf_progress *progress, swarf_comparison *out);
 
 #ifdef __cplusplus

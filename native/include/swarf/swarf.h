@@ -10,6 +10,7 @@
 #include "mesh.h"
 #include "program.h"
 #include "render.h"
+#include "solid.h"
 #include "stock.h"
 #include "sweep.h"
 

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* One array of edges, sorted, answers everything: an edge used once each way joins two triangles; an edge used more
- * often is where shells touch, and joins only those that would be open there without each other. */
-#include "stock/shells.h"
+ * often is where shells touch, and joins only those that would be open there without each other. Sorting is by buckets,
+ * one per lowest vertex: they hold half a dozen on usual meshes, so that it takes linear time. */
+#include "solid/shells.h"
 
 #include "base/status.h"
 #include "base/weld.h"
+#include "solid/angle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -35,7 +37,6 @@ typedef struct shell {
 static int compare_uses(const void *left, const void *right)
 {
     const edge_use *l = left, *r = right;
-    if (l->a != r->a) return l->a < r->a ? -1 : 1;
     if (l->b != r->b) return l->b < r->b ? -1 : 1;
     return l->triangle < r->triangle ? -1 : l->triangle > r->triangle;
 }
@@ -43,9 +44,41 @@ static int compare_uses(const void *left, const void *right)
 static int compare_faces(const void *left, const void *right)
 {
     const face_key *l = left, *r = right;
-    for (int k = 0; k < 3; k++)
+    for (int k = 1; k < 3; k++)
         if (l->v[k] != r->v[k]) return l->v[k] < r->v[k] ? -1 : 1;
     return l->triangle < r->triangle ? -1 : l->triangle > r->triangle;
+}
+
+/* Uses or faces in a bucket beyond which insertion is slower than qsort: the hub of a fan has thousands. */
+enum { FEW = 24 };
+
+/* Sort what lies between starts[i] and starts[i + 1] for every i. */
+static void sort_buckets(void *items, size_t size, const size_t *starts, size_t buckets,
+                         int (*compare)(const void *, const void *))
+{
+    char keep[sizeof(face_key) > sizeof(edge_use) ? sizeof(face_key) : sizeof(edge_use)];
+    for (size_t bucket = 0; bucket < buckets; bucket++) {
+        char *const first = (char *)items + starts[bucket] * size;
+        const size_t count = starts[bucket + 1] - starts[bucket];
+        if (count > FEW) {
+            qsort(first, count, size, compare);
+            continue;
+        }
+        for (size_t i = 1; i < count; i++) {
+            size_t j = i;
+            while (j > 0 && compare(first + (j - 1) * size, first + i * size) > 0) j--;
+            if (j == i) continue;
+            memcpy(keep, first + i * size, size);
+            memmove(first + (j + 1) * size, first + j * size, (i - j) * size);
+            memcpy(first + j * size, keep, size);
+        }
+    }
+}
+
+/* From numbers per bucket (one place up) to where each starts. */
+static void add_up(size_t *starts, size_t buckets)
+{
+    for (size_t i = 0; i < buckets; i++) starts[i + 1] += starts[i];
 }
 
 static swarf_status check_input(const swarf_triangles *t)
@@ -65,8 +98,10 @@ static swarf_status copy_welded(const swarf_triangles *t, swarf_shells *s)
 {
     s->xyz = malloc(3 * t->vertex_count * sizeof *s->xyz);
     s->index = malloc(3 * t->triangle_count * sizeof *s->index);
+    s->source = malloc(t->triangle_count * sizeof *s->source);
     uint32_t *map = malloc(t->vertex_count * sizeof *map);
-    swarf_status status = s->xyz && s->index && map ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    swarf_status status = SWARF_OK;
+    if (!s->xyz || !s->index || !s->source || !map) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     if (status == SWARF_OK) {
         memcpy(s->xyz, t->xyz, 3 * t->vertex_count * sizeof *s->xyz);
         status = swarf_weld(s->xyz, t->vertex_count, map, &s->vertex_count);
@@ -74,6 +109,7 @@ static swarf_status copy_welded(const swarf_triangles *t, swarf_shells *s)
     for (size_t i = 0; i < t->triangle_count && status == SWARF_OK; i++) {
         uint32_t *v = s->index + 3 * s->triangle_count;
         for (int k = 0; k < 3; k++) v[k] = map[t->index[3 * i + (size_t)k]];
+        s->source[s->triangle_count] = (uint32_t)i;
         if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0]) s->triangle_count++;
     }
     free(map);
@@ -89,27 +125,42 @@ static void swap(uint32_t *a, uint32_t *b, int32_t *even)
     *even = !*even;
 }
 
+static face_key key_of(const swarf_shells *s, size_t triangle)
+{
+    face_key key = {.triangle = (uint32_t)triangle, .even = 1};
+    memcpy(key.v, s->index + 3 * triangle, sizeof key.v);
+    swap(&key.v[0], &key.v[1], &key.even);
+    swap(&key.v[1], &key.v[2], &key.even);
+    swap(&key.v[0], &key.v[1], &key.even);
+    return key;
+}
+
+/* Faces by their vertices, so that those on the same three are neighbours. */
+static face_key *sorted_faces(const swarf_shells *s, size_t *starts)
+{
+    face_key *keys = malloc((s->triangle_count + 1) * sizeof *keys);
+    if (!keys) return NULL;
+    memset(starts, 0, (s->vertex_count + 2) * sizeof *starts);
+    for (size_t i = 0; i < s->triangle_count; i++) starts[(size_t)key_of(s, i).v[0] + 2]++;
+    add_up(starts + 1, s->vertex_count);
+    for (size_t i = 0; i < s->triangle_count; i++) {
+        const face_key key = key_of(s, i);
+        keys[starts[(size_t)key.v[0] + 1]++] = key;
+    }
+    sort_buckets(keys, sizeof *keys, starts, s->vertex_count, compare_faces);
+    return keys;
+}
+
 /* Of triangles on the same three vertices keep one of the side that is in the majority, or none. */
-static swarf_status drop_duplicates(swarf_shells *s)
+static swarf_status drop_duplicates(swarf_shells *s, size_t *starts)
 {
     const size_t count = s->triangle_count;
-    face_key *keys = malloc((count + 1) * sizeof *keys);
     unsigned char *keep = calloc(count + 1, 1);
-    if (!keys || !keep) {
-        free(keys);
+    face_key *keys = keep ? sorted_faces(s, starts) : NULL;
+    if (!keys) {
         free(keep);
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     }
-    for (size_t i = 0; i < count; i++) {
-        face_key *key = &keys[i];
-        memcpy(key->v, s->index + 3 * i, sizeof key->v);
-        key->triangle = (uint32_t)i;
-        key->even = 1;
-        swap(&key->v[0], &key->v[1], &key->even);
-        swap(&key->v[1], &key->v[2], &key->even);
-        swap(&key->v[0], &key->v[1], &key->even);
-    }
-    qsort(keys, count, sizeof *keys, compare_faces);
     for (size_t i = 0, j; i < count; i = j) {
         ptrdiff_t balance = 0;
         for (j = i; j < count && memcmp(keys[j].v, keys[i].v, sizeof keys[i].v) == 0; j++)
@@ -121,22 +172,32 @@ static swarf_status drop_duplicates(swarf_shells *s)
             }
     }
     s->triangle_count = 0;
-    for (size_t i = 0; i < count; i++)
-        if (keep[i]) memmove(s->index + 3 * s->triangle_count++, s->index + 3 * i, 3 * sizeof *s->index);
+    for (size_t i = 0; i < count; i++) {
+        if (!keep[i]) continue;
+        s->source[s->triangle_count] = s->source[i];
+        memmove(s->index + 3 * s->triangle_count++, s->index + 3 * i, 3 * sizeof *s->index);
+    }
     free(keys);
     free(keep);
     return SWARF_OK;
 }
 
-static edge_use *sorted_uses(const swarf_shells *s)
+static edge_use *sorted_uses(const swarf_shells *s, size_t *starts)
 {
-    edge_use *uses = malloc((3 * s->triangle_count + 1) * sizeof *uses);
-    for (size_t i = 0; uses && i < s->triangle_count; i++)
-        for (size_t k = 0; k < 3; k++) {
-            const uint32_t a = s->index[3 * i + k], b = s->index[3 * i + (k + 1) % 3];
-            uses[3 * i + k] = a < b ? (edge_use){a, b, (uint32_t)i, 1} : (edge_use){b, a, (uint32_t)i, -1};
-        }
-    if (uses) qsort(uses, 3 * s->triangle_count, sizeof *uses, compare_uses);
+    const size_t count = 3 * s->triangle_count;
+    edge_use *uses = malloc((count + 1) * sizeof *uses);
+    if (!uses) return NULL;
+    memset(starts, 0, (s->vertex_count + 2) * sizeof *starts);
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t a = s->index[i], b = s->index[i - i % 3 + (i + 1) % 3];
+        starts[(size_t)(a < b ? a : b) + 2]++;
+    }
+    add_up(starts + 1, s->vertex_count);
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t a = s->index[i], b = s->index[i - i % 3 + (i + 1) % 3], t = (uint32_t)(i / 3);
+        uses[starts[(size_t)(a < b ? a : b) + 1]++] = a < b ? (edge_use){a, b, t, 1} : (edge_use){b, a, t, -1};
+    }
+    sort_buckets(uses, sizeof *uses, starts, s->vertex_count, compare_uses);
     return uses;
 }
 
@@ -147,9 +208,20 @@ static size_t end_of_edge(const edge_use *uses, size_t first, size_t count)
     return end;
 }
 
-static swarf_status check_edges(const swarf_shells *s, const edge_use *uses)
+static double edge_length(const swarf_shells *s, const edge_use *use)
 {
-    size_t open = 0, turned = 0, first = SIZE_MAX;
+    double square = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double along = (double)s->xyz[3 * (size_t)use->b + c] - s->xyz[3 * (size_t)use->a + c];
+        square += along * along;
+    }
+    return sqrt(square);
+}
+
+static swarf_status check_edges(swarf_shells *s, const edge_use *uses, double hole_share)
+{
+    size_t first = SIZE_MAX;
+    double length = 0;
     const size_t count = 3 * s->triangle_count;
     for (size_t i = 0, j; i < count; i = j) {
         int balance = 0;
@@ -157,20 +229,45 @@ static swarf_status check_edges(const swarf_shells *s, const edge_use *uses)
         for (size_t k = i; k < j; k++) balance += uses[k].forward;
         if (balance == 0) continue;
         if ((j - i) % 2)
-            open++;
+            s->open_edges++;
         else
-            turned++;
+            s->turned_edges++;
+        length += edge_length(s, &uses[i]);
         if (first == SIZE_MAX) first = i;
     }
     if (first == SIZE_MAX) return SWARF_OK;
+    s->hole_mm2 = length * length / (4 * 3.14159265358979323846); /* no loop of this length bounds more */
+    if (s->hole_mm2 <= hole_share * s->area_mm2) return SWARF_OK;
     double middle[3];
     for (int c = 0; c < 3; c++)
         middle[c] = 0.5 * ((double)s->xyz[3 * (size_t)uses[first].a + (size_t)c] +
                            s->xyz[3 * (size_t)uses[first].b + (size_t)c]);
     return swarf_fail(SWARF_ERROR_GEOMETRY,
                       "mesh: not closed: %zu open edges and %zu between triangles turned different ways, the first at "
-                      "(%.6g, %.6g, %.6g) mm; a stock needs a closed surface",
-                      open, turned, middle[0], middle[1], middle[2]);
+                      "(%.6g, %.6g, %.6g) mm; %s needs a closed surface",
+                      s->open_edges, s->turned_edges, middle[0], middle[1], middle[2],
+                      hole_share > 0 ? "telling in from out" : "a stock");
+}
+
+static size_t edge_number(const swarf_shells *s, const edge_use *use)
+{
+    const uint32_t *v = s->index + 3 * (size_t)use->triangle, from = use->forward > 0 ? use->a : use->b;
+    return 3 * (size_t)use->triangle + (v[0] == from ? 0 : v[1] == from ? 1 : 2);
+}
+
+static swarf_status find_across(swarf_shells *s, const edge_use *uses)
+{
+    const size_t count = 3 * s->triangle_count;
+    s->across = malloc((count + 1) * sizeof *s->across);
+    if (!s->across) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    memset(s->across, 0xff, count * sizeof *s->across);
+    for (size_t i = 0, j; i < count; i = j) {
+        j = end_of_edge(uses, i, count);
+        if (j - i != 2 || uses[i].forward == uses[i + 1].forward) continue;
+        s->across[edge_number(s, &uses[i])] = uses[i + 1].triangle;
+        s->across[edge_number(s, &uses[i + 1])] = uses[i].triangle;
+    }
+    return SWARF_OK;
 }
 
 static uint32_t find_root(uint32_t *parent, uint32_t i)
@@ -225,25 +322,6 @@ static double six_volume(const swarf_shells *s, size_t triangle)
            p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
 }
 
-/* Solid angle of a triangle (van Oosterom and Strackee, 1983). */
-static double solid_angle(const swarf_shells *s, size_t triangle, const double point[3])
-{
-    double p[3][3], length[3];
-    for (size_t k = 0; k < 3; k++) {
-        for (size_t c = 0; c < 3; c++) p[k][c] = s->xyz[3 * (size_t)s->index[3 * triangle + k] + c] - point[c];
-        length[k] = sqrt(p[k][0] * p[k][0] + p[k][1] * p[k][1] + p[k][2] * p[k][2]);
-    }
-    const double volume = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
-                          p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
-                          p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
-    double below = length[0] * length[1] * length[2];
-    for (int k = 0; k < 3; k++) {
-        const double *u = p[k], *v = p[(k + 1) % 3];
-        below += (u[0] * v[0] + u[1] * v[1] + u[2] * v[2]) * length[(k + 2) % 3];
-    }
-    return 2 * atan2(volume, below);
-}
-
 /* A cavity counts only inside a solid: the winding number of all other shells there must be one or more. */
 static swarf_status check_cavity(const swarf_shells *s, const uint32_t *shell_of, const shell *shells, uint32_t number)
 {
@@ -255,7 +333,11 @@ static swarf_status check_cavity(const swarf_shells *s, const uint32_t *shell_of
         const shell *other = &shells[shell_of[i]];
         int around = shell_of[i] != number;
         for (int c = 0; c < 3; c++) around &= point[c] >= other->lo[c] && point[c] <= other->hi[c];
-        if (around) angle += solid_angle(s, i, point);
+        if (!around) continue;
+        double p[3][3];
+        for (size_t k = 0; k < 3; k++)
+            for (size_t c = 0; c < 3; c++) p[k][c] = s->xyz[3 * (size_t)s->index[3 * i + k] + c] - point[c];
+        angle += swarf_solid_angle(p);
     }
     if (angle > 2 * 3.14159265358979323846) return SWARF_OK; /* halfway to the full turn of 4 pi */
     return swarf_fail(SWARF_ERROR_GEOMETRY,
@@ -314,9 +396,15 @@ static swarf_status gather_shells(const swarf_shells *s, uint32_t *parent, shell
 static swarf_status make_runs(swarf_shells *s, const uint32_t *shell_of, shell *shells, size_t count)
 {
     uint32_t *index = malloc(3 * s->triangle_count * sizeof *index);
+    uint32_t *source = malloc(s->triangle_count * sizeof *source);
+    uint32_t *across = malloc(3 * s->triangle_count * sizeof *across);
+    uint32_t *places = malloc(s->triangle_count * sizeof *places);
     s->runs = malloc(count * sizeof *s->runs);
-    if (!index || !s->runs) {
+    if (!index || !source || !across || !places || !s->runs) {
         free(index);
+        free(source);
+        free(across);
+        free(places);
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     }
     size_t first = 0;
@@ -328,10 +416,22 @@ static swarf_status make_runs(swarf_shells *s, const uint32_t *shell_of, shell *
         shells[i].next = first;
         first += shells[i].count;
     }
-    for (size_t i = 0; i < s->triangle_count; i++)
-        memcpy(index + 3 * shells[shell_of[i]].next++, s->index + 3 * i, 3 * sizeof *index);
+    for (size_t i = 0; i < s->triangle_count; i++) places[i] = (uint32_t)shells[shell_of[i]].next++;
+    for (size_t i = 0; i < s->triangle_count; i++) {
+        memcpy(index + 3 * (size_t)places[i], s->index + 3 * i, 3 * sizeof *index);
+        source[places[i]] = s->source[i];
+        for (size_t k = 0; k < 3; k++) {
+            const uint32_t other = s->across[3 * i + k];
+            across[3 * (size_t)places[i] + k] = other == UINT32_MAX ? UINT32_MAX : places[other];
+        }
+    }
     free(s->index);
+    free(s->source);
+    free(s->across);
+    free(places);
     s->index = index;
+    s->source = source;
+    s->across = across;
     return SWARF_OK;
 }
 
@@ -341,19 +441,6 @@ static swarf_status split(swarf_shells *s, uint32_t *parent)
     size_t count = 0;
     SWARF_TRY(gather_shells(s, parent, &shells, &count));
     swarf_status status = SWARF_OK;
-    s->box = (swarf_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (size_t i = 0; i < count; i++) {
-        s->volume_mm3 += shells[i].volume;
-        for (int c = 0; c < 3; c++) {
-            s->box.lo[c] = fmin(s->box.lo[c], shells[i].lo[c]);
-            s->box.hi[c] = fmax(s->box.hi[c], shells[i].hi[c]);
-        }
-    }
-    if (!(s->volume_mm3 > 0))
-        status = swarf_fail(SWARF_ERROR_GEOMETRY,
-                            s->volume_mm3 < 0 ? "mesh: inside out (volume %g mm3): turn its triangles round"
-                                              : "mesh: encloses no volume (%g mm3)",
-                            s->volume_mm3);
     for (size_t i = 0; i < count && status == SWARF_OK; i++)
         if (shells[i].volume < 0) status = check_cavity(s, parent, shells, (uint32_t)i);
     if (status == SWARF_OK) status = make_runs(s, parent, shells, count);
@@ -361,29 +448,79 @@ static swarf_status split(swarf_shells *s, uint32_t *parent)
     return status;
 }
 
-static swarf_status check_and_split(swarf_shells *s)
+/* Volume, area and box. */
+static void measure(swarf_shells *s)
 {
-    edge_use *uses = sorted_uses(s);
+    s->box = (swarf_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < s->triangle_count; i++) {
+        double p[3][3], u[3], v[3];
+        for (size_t k = 0; k < 3; k++)
+            for (size_t c = 0; c < 3; c++) {
+                p[k][c] = s->xyz[3 * (size_t)s->index[3 * i + k] + c];
+                s->box.lo[c] = fmin(s->box.lo[c], p[k][c]);
+                s->box.hi[c] = fmax(s->box.hi[c], p[k][c]);
+            }
+        for (size_t c = 0; c < 3; c++) {
+            u[c] = p[1][c] - p[0][c];
+            v[c] = p[2][c] - p[0][c];
+        }
+        s->area_mm2 +=
+            0.5 * hypot(hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2]), u[0] * v[1] - u[1] * v[0]);
+        s->volume_mm3 += six_volume(s, i) / 6;
+    }
+}
+
+static swarf_status check_volume(const swarf_shells *s)
+{
+    if (s->volume_mm3 > 0) return SWARF_OK;
+    return swarf_fail(SWARF_ERROR_GEOMETRY,
+                      s->volume_mm3 < 0 ? "mesh: inside out (volume %g mm3): turn its triangles round"
+                                        : "mesh: encloses no volume (%g mm3)",
+                      s->volume_mm3);
+}
+
+static swarf_status make_one_run(swarf_shells *s)
+{
+    s->runs = malloc(sizeof *s->runs);
+    if (!s->runs) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    s->runs[0] = (swarf_shell_run){0, s->triangle_count, 0};
+    s->run_count = 1;
+    return SWARF_OK;
+}
+
+static swarf_status check_and_split(swarf_shells *s, double hole_share, size_t *starts)
+{
+    edge_use *uses = sorted_uses(s, starts);
     uint32_t *parent = malloc((s->triangle_count + 1) * sizeof *parent);
-    swarf_status status = uses && parent ? check_edges(s, uses) : swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
-    if (status == SWARF_OK) {
+    swarf_status status = SWARF_OK;
+    if (!uses || !parent) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    if (status == SWARF_OK) status = check_edges(s, uses, hole_share);
+    if (status == SWARF_OK) status = check_volume(s);
+    if (status == SWARF_OK) status = find_across(s, uses);
+    const int holes = s->open_edges || s->turned_edges;
+    if (status == SWARF_OK && !holes) {
         for (size_t i = 0; i < s->triangle_count; i++) parent[i] = (uint32_t)i;
         join_shells(uses, 3 * s->triangle_count, parent);
     }
     free(uses);
-    if (status == SWARF_OK) status = split(s, parent);
+    if (status == SWARF_OK) status = holes ? make_one_run(s) : split(s, parent);
     free(parent);
     return status;
 }
 
-swarf_status swarf_shells_create(const swarf_triangles *triangles, swarf_shells *out)
+swarf_status swarf_shells_create(const swarf_triangles *triangles, double hole_share, swarf_shells *out)
 {
     SWARF_TRY(check_input(triangles));
     swarf_shells shells;
     memset(&shells, 0, sizeof shells);
+    size_t *starts = NULL; /* of buckets */
     swarf_status status = copy_welded(triangles, &shells);
-    if (status == SWARF_OK) status = drop_duplicates(&shells);
-    if (status == SWARF_OK) status = check_and_split(&shells);
+    if (status == SWARF_OK && !(starts = malloc((shells.vertex_count + 2) * sizeof *starts)))
+        status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    if (status == SWARF_OK) status = drop_duplicates(&shells, starts);
+    if (status == SWARF_OK) measure(&shells);
+    if (status == SWARF_OK) status = check_and_split(&shells, hole_share, starts);
+    free(starts);
     if (status != SWARF_OK) {
         swarf_shells_free(&shells);
         return status;
@@ -396,6 +533,8 @@ void swarf_shells_free(swarf_shells *shells)
 {
     free(shells->xyz);
     free(shells->index);
+    free(shells->source);
+    free(shells->across);
     free(shells->runs);
     memset(shells, 0, sizeof *shells);
 }

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Which triangles cross or touch others that share no vertex with them, and which lie inside the solid. */
+#include "base/parallel.h"
+#include "base/status.h"
+#include "solid/solid.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Share of the gap by which the projections of triangles with a common corner may overlap. */
+static const double touching = 1e-3;
+
+/* Whether the projections of two triangles on an axis lie more than `gap` apart. */
+static int are_apart(double a[3][3], double b[3][3], const double axis[3], double gap)
+{
+    double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
+    const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    for (int i = 0; i < 3; i++) {
+        const double at[2] = {a[i][0] * axis[0] + a[i][1] * axis[1] + a[i][2] * axis[2],
+                              b[i][0] * axis[0] + b[i][1] * axis[1] + b[i][2] * axis[2]};
+        for (int k = 0; k < 2; k++) {
+            lo[k] = at[k] < lo[k] ? at[k] : lo[k];
+            hi[k] = at[k] > hi[k] ? at[k] : hi[k];
+        }
+    }
+    return lo[0] - hi[1] > gap * length || lo[1] - hi[0] > gap * length;
+}
+
+static void cross(const double u[3], const double v[3], double out[3])
+{
+    for (int k = 0; k < 3; k++) out[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+}
+
+/* Whether all corners of a triangle are within `gap` of a plane through the origin. */
+static int lies_in(double p[3][3], const double normal[3], double gap)
+{
+    const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    for (int i = 0; i < 3; i++)
+        if (fabs(p[i][0] * normal[0] + p[i][1] * normal[1] + p[i][2] * normal[2]) > gap * length) return 0;
+    return 1;
+}
+
+/* Separating axes: the two normals, across the edges in each plane, and the edges of both crossed. Triangles are apart
+ * when their projections on one of them are, by more than `gap`. Those with a common corner cannot be; they may touch
+ * there, unless they lie on top of each other. */
+static int meet(const swarf_corners *first, const swarf_corners *second, double gap, int share)
+{
+    double a[3][3], b[3][3], edge_a[3][3], edge_b[3][3], normal_a[3], normal_b[3], axis[3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) { /* relative to a corner, or coordinates' digits would drown the gap */
+            a[i][k] = (double)first->xyz[i][k] - first->xyz[0][k];
+            b[i][k] = (double)second->xyz[i][k] - first->xyz[0][k];
+        }
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            edge_a[i][k] = a[(i + 1) % 3][k] - a[i][k];
+            edge_b[i][k] = b[(i + 1) % 3][k] - b[i][k];
+        }
+    cross(edge_a[0], edge_a[1], normal_a);
+    cross(edge_b[0], edge_b[1], normal_b);
+    const int flat = share && lies_in(b, normal_a, gap);
+    const double least = share ? -touching * gap : gap;
+    if (!flat && are_apart(a, b, normal_a, least)) return 0;
+    if (!flat && are_apart(a, b, normal_b, least)) return 0;
+    for (int i = 0; i < 3; i++) {
+        cross(normal_a, edge_a[i], axis);
+        if (are_apart(a, b, axis, least)) return 0;
+        cross(normal_b, edge_b[i], axis);
+        if (are_apart(a, b, axis, least)) return 0;
+    }
+    for (int i = 0; i < 9 && !flat; i++) {
+        cross(edge_a[i / 3], edge_b[i % 3], axis);
+        if (are_apart(a, b, axis, least)) return 0;
+    }
+    return 1;
+}
+
+struct crossing_work {
+    swarf_solid *solid;
+    double gap;
+};
+
+/* The places of one group, and what comes near them. */
+struct group_work {
+    const struct crossing_work *work;
+    size_t first, end;
+    float lo[TREE_WIDTH][3], hi[TREE_WIDTH][3];
+};
+
+/* Number of corners that two triangles have in common. */
+static int common_corners(const uint32_t a[3], const uint32_t b[3])
+{
+    int count = 0;
+    for (int i = 0; i < 9; i++) count += a[i / 3] == b[i % 3];
+    return count;
+}
+
+static int are_neighbours(const swarf_solid *solid, size_t place, size_t other)
+{
+    const uint32_t *across = solid->across[place];
+    return across[0] == other || across[1] == other || across[2] == other;
+}
+
+static void test_place(void *context, size_t place)
+{
+    const struct group_work *group = context;
+    swarf_solid *solid = group->work->solid;
+    if (place < group->first) return; /* that one's group sees to it */
+    float lo[3], hi[3];
+    for (int k = 0; k < 3; k++) {
+        const float(*p)[3] = solid->corners[place].xyz;
+        lo[k] = fminf(p[0][k], fminf(p[1][k], p[2][k]));
+        hi[k] = fmaxf(p[0][k], fmaxf(p[1][k], p[2][k]));
+    }
+    const float gap = (float)group->work->gap;
+    for (size_t other = group->first; other < group->end && other < place; other++) {
+        int near = 1;
+        for (int k = 0; k < 3; k++)
+            near &=
+                group->lo[other - group->first][k] <= hi[k] + gap && group->hi[other - group->first][k] >= lo[k] - gap;
+        if (!near) continue;
+        const int share = common_corners(solid->vertex[place], solid->vertex[other]) > 0;
+        if (share && are_neighbours(solid, place, other)) continue;
+        if (!meet(&solid->corners[other], &solid->corners[place], group->work->gap, share)) continue;
+        __atomic_store_n(&solid->state[place], SOLID_CROSSING, __ATOMIC_RELAXED);
+        __atomic_store_n(&solid->state[other], SOLID_CROSSING, __ATOMIC_RELAXED);
+    }
+}
+
+/* Groups that one piece of work looks at. */
+enum { GROUPS = 64 };
+
+static swarf_status test_groups(void *context, size_t index)
+{
+    const struct crossing_work *work = context;
+    const swarf_box_tree *tree = &work->solid->tree;
+    for (size_t number = index * GROUPS; number < (index + 1) * GROUPS && number < tree->first[1]; number++) {
+        struct group_work group = {.work = work, .first = number * TREE_WIDTH};
+        group.end = group.first + TREE_WIDTH < tree->count ? group.first + TREE_WIDTH : tree->count;
+        double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+        for (size_t i = 0; i < group.end - group.first; i++)
+            for (int k = 0; k < 3; k++) {
+                group.lo[i][k] = tree->groups[number].lo[k][i];
+                group.hi[i][k] = tree->groups[number].hi[k][i];
+                lo[k] = fmin(lo[k], group.lo[i][k]);
+                hi[k] = fmax(hi[k], group.hi[i][k]);
+            }
+        swarf_box_tree_near(tree, lo, hi, work->gap, test_place, &group);
+    }
+    return SWARF_OK;
+}
+
+static uint32_t find_root(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+/* Drop whole patches of plain triangles that lie inside: all of a patch do, or none. */
+static swarf_status drop_inner(swarf_solid *solid)
+{
+    const size_t count = solid->tree.count;
+    uint32_t *parent = malloc(count * sizeof *parent);
+    if (!parent) return swarf_fail(SWARF_ERROR_MEMORY, "solid: out of memory");
+    for (size_t i = 0; i < count; i++) parent[i] = (uint32_t)i;
+    for (size_t i = 0; i < count; i++) {
+        if (solid->state[i] != SOLID_PLAIN) continue;
+        for (int k = 0; k < 3; k++) {
+            const uint32_t other = solid->across[i][k];
+            if (other >= i || solid->state[other] != SOLID_PLAIN) continue;
+            const uint32_t a = find_root(parent, (uint32_t)i), b = find_root(parent, other);
+            parent[a > b ? a : b] = a > b ? b : a;
+        }
+    }
+    size_t patches = 0;
+    for (size_t i = 0; i < count; i++) patches += solid->state[i] == SOLID_PLAIN && parent[i] == i;
+    /* a single patch bounds whatever there is */
+    if (patches > 1 || !solid->plain) {
+        uint8_t *inner = calloc(count, 1);
+        if (!inner) {
+            free(parent);
+            return swarf_fail(SWARF_ERROR_MEMORY, "solid: out of memory");
+        }
+        for (size_t i = 0; i < count; i++) {
+            if (solid->state[i] != SOLID_PLAIN || parent[i] != i) continue;
+            double centre[3];
+            for (int k = 0; k < 3; k++)
+                centre[k] =
+                    ((double)solid->corners[i].xyz[0][k] + solid->corners[i].xyz[1][k] + solid->corners[i].xyz[2][k]) /
+                    3;
+            inner[i] = !swarf_solid_bounds(solid, i, centre);
+        }
+        for (size_t i = 0; i < count; i++)
+            if (solid->state[i] == SOLID_PLAIN && inner[find_root(parent, (uint32_t)i)])
+                solid->state[i] = SOLID_DROPPED;
+        free(inner);
+    }
+    free(parent);
+    return SWARF_OK;
+}
+
+swarf_status swarf_solid_find_crossings(swarf_solid *solid, const swarf_progress *progress, double from, double to)
+{
+    struct crossing_work work = {solid, 0.25 * solid->tree.slack};
+    const size_t groups = solid->tree.first[1];
+    SWARF_TRY(swarf_parallel_for((groups + GROUPS - 1) / GROUPS, test_groups, &work, progress, from, to));
+    for (size_t i = 0; i < solid->tree.count; i++) solid->facts.crossing_triangles += solid->state[i] == SOLID_CROSSING;
+    solid->plain = solid->facts.crossing_triangles == 0;
+    SWARF_TRY(drop_inner(solid));
+    solid->facts.triangle_count = 0;
+    solid->plain = 1;
+    for (size_t i = 0; i < solid->tree.count; i++) {
+        solid->facts.triangle_count += solid->state[i] != SOLID_DROPPED;
+        if (solid->state[i] != SOLID_PLAIN) solid->plain = 0;
+    }
+    if (solid->facts.triangle_count == 0)
+        return swarf_fail(SWARF_ERROR_GEOMETRY, "mesh: its triangles enclose nothing");
+    return SWARF_OK;
+}

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Inside of a solid, for the rooms that measure against it. */
+#ifndef SWARF_SOLID_SOLID_H
+#define SWARF_SOLID_SOLID_H
+
+#include "solid/tree.h"
+#include "swarf/solid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What is known of a triangle. */
+enum {
+    SOLID_PLAIN = 0,
+    SOLID_CROSSING = 1, /* crosses or touches others: part of it may lie inside; its normal tells no sign */
+    SOLID_DROPPED = 2   /* inside: bounds nothing */
+};
+
+struct swarf_solid {
+    int references; /* only by atomic operations */
+    swarf_solid_facts facts;
+    swarf_box_tree tree;
+    /* by place in the tree */
+    swarf_corners *corners;
+    uint32_t *source;      /* number in the triangles given */
+    uint32_t (*vertex)[3]; /* numbers of the corners */
+    uint32_t (*across)[3]; /* place beyond edge k, UINT32_MAX where there is not just one */
+    uint8_t *state;
+    int plain; /* all triangles are */
+    int open;  /* there are holes: normals tell no sign */
+    /* by vertex */
+    size_t vertex_count;
+    float (*normal)[3]; /* weighted by the angles of the triangles there; zero where it tells no sign */
+};
+
+/** swarf_solid_create() with holes of at most this share of the area (0: none), as a part of a longer work. */
+swarf_status swarf_solid_make(const swarf_triangles *triangles, double hole_share, const swarf_progress *progress,
+                              double from, double to, swarf_solid **out);
+
+/** Where a solid comes closest to a point. */
+typedef struct swarf_solid_hit {
+    double distance; /**< signed */
+    double point[3];
+    size_t place; /**< SIZE_MAX: the triangles are farther away than asked for; then distance means nothing */
+} swarf_solid_hit;
+
+/** Look no farther than `reach` (INFINITY: find the closest point wherever it is). Any thread. */
+void swarf_solid_find(const swarf_solid *solid, const double point[3], double reach, swarf_solid_hit *out);
+/** By the winding number: slower than swarf_solid_find(), and needs nothing to be near. Any thread. */
+int swarf_solid_inside(const swarf_solid *solid, const double point[3]);
+
+/** The closest point that bounds the solid; place SIZE_MAX when it is farther than `reach`, never with INFINITY. */
+void swarf_solid_nearest(const swarf_solid *solid, const double point[3], double reach, swarf_nearest *out);
+/** Sign (+1 outside, -1 inside) of a point whose closest feature this is; asks the winding number where need be. */
+double swarf_solid_sign(const swarf_solid *solid, const double point[3], const swarf_nearest *nearest);
+/** Whether a triangle bounds the solid at one of its points: what lies just before and behind differs. */
+int swarf_solid_bounds(const swarf_solid *solid, size_t place, const double point[3]);
+
+/** Twice the area times the unit normal of a triangle. */
+static inline void swarf_corners_normal(const swarf_corners *t, double out[3])
+{
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) {
+        u[k] = (double)t->xyz[1][k] - t->xyz[0][k];
+        v[k] = (double)t->xyz[2][k] - t->xyz[0][k];
+    }
+    for (int k = 0; k < 3; k++) out[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+}
+
+/** Mark the triangles that cross or touch others, and those inside (crossing.c). */
+swarf_status swarf_solid_find_crossings(swarf_solid *solid, const swarf_progress *progress, double from, double to);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
