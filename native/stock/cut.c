@@ -367,6 +367,7 @@ swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const sw
     swarf_status status = SWARF_OK;
     for (size_t i = 0; i < count && status == SWARF_OK; i++)
         status = swarf_track_append(&list, &paths[i], layout->origin, layout->voxel);
+    swarf_tree_next_generation(stock->tree);
     if (status == SWARF_OK) status = cut_tracks(stock, body, &list, progress, from, to);
     free(list.tracks);
     return status;

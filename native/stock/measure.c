@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Volume, box, hash, size and samples. Sums are made per node and then in the order of the nodes, so that they do
- * not depend on the threads. */
+/* Volume, box, hash, size, changes and samples. Sums are made per node and then in the order of the nodes, so that they
+ * do not depend on the threads. */
 #include "stock/measure.h"
 
 #include "base/parallel.h"
@@ -181,6 +181,37 @@ swarf_status swarf_stock_size(swarf_stock *stock, size_t *leaves, size_t *bytes)
     SWARF_TRY(swarf_stock_enter_read(stock));
     swarf_tree_size(stock->tree, leaves, bytes);
     swarf_stock_leave(stock);
+    return SWARF_OK;
+}
+
+static swarf_box cube_box(const swarf_tree_layout *layout, size_t node, int cube)
+{
+    const int edge = SWARF_CUBE_SLOTS * SWARF_LEAF_DIM, at[3] = {cube >> 4, cube >> 2 & 3, cube & 3};
+    int32_t corner[3];
+    swarf_node_corner(layout, node, corner);
+    swarf_box box;
+    for (int k = 0; k < 3; k++) {
+        box.lo[k] = layout->origin[k] + (corner[k] + edge * at[k] - 0.5) * layout->voxel;
+        box.hi[k] = box.lo[k] + edge * layout->voxel;
+    }
+    return box;
+}
+
+swarf_status swarf_stock_changed(swarf_stock *stock, uint32_t since, swarf_box *boxes, size_t room, size_t *count)
+{
+    SWARF_REQUIRE(count && (boxes || room == 0), "stock: output missing");
+    SWARF_TRY(swarf_stock_enter_read(stock));
+    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
+    const size_t nodes = swarf_layout_nodes(layout);
+    size_t found = 0;
+    for (size_t node = 0; node < nodes; node++)
+        for (int cube = 0; cube < SWARF_NODE_CUBES; cube++) {
+            if (swarf_stock_stamp(stock, node, (unsigned)cube) <= since) continue;
+            if (found < room) boxes[found] = cube_box(layout, node, cube);
+            found++;
+        }
+    swarf_stock_leave(stock);
+    *count = found;
     return SWARF_OK;
 }
 

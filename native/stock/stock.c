@@ -192,6 +192,16 @@ void swarf_stock_leave(swarf_stock *stock)
     __atomic_store_n(&stock->busy, 0, __ATOMIC_RELEASE);
 }
 
+uint32_t swarf_stock_generation(const swarf_stock *stock)
+{
+    return stock ? swarf_tree_get_layout(stock->tree)->generation : 0;
+}
+
+uint32_t swarf_stock_stamp(const swarf_stock *stock, size_t node, unsigned cube)
+{
+    return swarf_tree_get_layout(stock->tree)->stamps[node * SWARF_NODE_CUBES + cube];
+}
+
 double swarf_stock_voxel(const swarf_stock *stock)
 {
     return stock ? swarf_tree_get_layout(stock->tree)->voxel : 0;

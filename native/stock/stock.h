@@ -48,6 +48,10 @@ typedef struct swarf_leaf {
 /** All leaves in ascending order of node and slot; freed by the caller with free(). Call between enter and leave. */
 swarf_status swarf_stock_leaves(const swarf_stock *stock, swarf_leaf **out, size_t *count);
 
+/** Generation in which anything in a cube of 32^3 voxels, (x * 4 + y) * 4 + z of a node, last changed. A boolean may
+ *  put another layout in place and stamps all of it. */
+uint32_t swarf_stock_stamp(const swarf_stock *stock, size_t node, unsigned cube);
+
 /** Value at a voxel of the layout, in mm; outside the layout +background. */
 float swarf_stock_value(const swarf_stock *stock, const int32_t ijk[3]);
 

@@ -92,6 +92,7 @@ extern "C" swarf_status swarf_stock_boolean(swarf_stock *stock, swarf_stock *oth
             if (operation == SWARF_UNION) SWARF_TRY(check_union(*stock->tree, *other->tree, shift));
             swarf_tree *result =
                 swarf_arena_run([&] { return combine(*stock->tree, other->tree->grid->tree(), shift, operation); });
+            swarf_tree_stamp_all(result, stock->tree->layout.generation + 1);
             swarf_tree_destroy(stock->tree);
             stock->tree = result;
             return SWARF_OK;

@@ -3,6 +3,7 @@
 
 #include "base/guard.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -56,6 +57,9 @@ void fill_nodes(swarf_tree &tree)
     tree.nodes.resize(total);
     tree.occupied.assign(total * SWARF_NODE_WORDS, 0);
     tree.layout.occupied = tree.occupied.data();
+    tree.stamps.resize(total * SWARF_NODE_CUBES);
+    tree.layout.stamps = tree.stamps.data();
+    swarf_tree_stamp_all(&tree, 1);
     for (int32_t x = 0; x < count[0]; x++)
         for (int32_t y = 0; y < count[1]; y++)
             for (int32_t z = 0; z < count[2]; z++)
@@ -88,6 +92,14 @@ std::unique_ptr<swarf_vdb_leaf> take_leaf(const Coord &corner)
     auto leaf = std::make_unique<swarf_vdb_leaf>(openvdb::PartialCreate(), corner, 0.0f, false);
     leaf->buffer().allocate();
     return leaf;
+}
+
+/* The cube of a slot is its number without the low two bits of x, y and z. */
+void stamp(swarf_tree *tree, size_t node, unsigned slot)
+{
+    const unsigned cube = (slot >> 10) << 4 | (slot >> 6 & 3) << 2 | (slot >> 2 & 3);
+    uint32_t &own = tree->layout.stamps[node * SWARF_NODE_CUBES + cube];
+    if (own != tree->layout.generation) own = tree->layout.generation; /* unwritten lines stay in all caches */
 }
 
 void set_mask(swarf_vdb_leaf &leaf, const uint64_t mask[8])
@@ -157,6 +169,7 @@ extern "C" swarf_status swarf_tree_copy(const swarf_tree *tree, swarf_tree **out
         auto copy = std::make_unique<swarf_tree>(*tree);
         copy->grid = tree->grid->deepCopy();
         copy->layout.occupied = copy->occupied.data();
+        copy->layout.stamps = copy->stamps.data();
         for (size_t node = 0; node < copy->nodes.size(); node++)
             copy->nodes[node] = copy->grid->tree().probeNode<swarf_vdb_node>(tree->nodes[node]->origin());
         *out = copy.release();
@@ -174,6 +187,17 @@ extern "C" void swarf_tree_destroy(swarf_tree *tree)
 extern "C" const swarf_tree_layout *swarf_tree_get_layout(const swarf_tree *tree)
 {
     return &tree->layout;
+}
+
+extern "C" void swarf_tree_next_generation(swarf_tree *tree)
+{
+    tree->layout.generation++;
+}
+
+extern "C" void swarf_tree_stamp_all(swarf_tree *tree, uint32_t generation)
+{
+    tree->layout.generation = generation;
+    std::fill(tree->stamps.begin(), tree->stamps.end(), generation);
 }
 
 extern "C" float *swarf_tree_leaf(const swarf_tree *tree, size_t node, unsigned slot)
@@ -196,6 +220,7 @@ extern "C" swarf_status swarf_tree_leaf_add(swarf_tree *tree, size_t node, unsig
         std::memcpy(leaf->buffer().data(), values, SWARF_LEAF_SIZE * sizeof(float));
         set_mask(*leaf, mask);
         holder.addLeaf(leaf.release());
+        stamp(tree, node, slot);
         tree->layout.occupied[node * SWARF_NODE_WORDS + (slot >> 6)] |= uint64_t(1) << (slot & 63);
         return SWARF_OK;
     });
@@ -204,6 +229,7 @@ extern "C" swarf_status swarf_tree_leaf_add(swarf_tree *tree, size_t node, unsig
 extern "C" void swarf_tree_leaf_mask(swarf_tree *tree, size_t node, unsigned slot, const uint64_t mask[8])
 {
     set_mask(*leaf_of(tree, node, slot), mask);
+    stamp(tree, node, slot);
 }
 
 extern "C" void swarf_tree_tile(swarf_tree *tree, size_t node, unsigned slot, int inside)
@@ -214,6 +240,7 @@ extern "C" void swarf_tree_tile(swarf_tree *tree, size_t node, unsigned slot, in
         spares.emplace_back(holder.stealNode<swarf_vdb_leaf>(slot_corner(holder, slot), value, false));
     else
         holder.addTile(Index(slot), value, false);
+    stamp(tree, node, slot);
     uint64_t &word = tree->layout.occupied[node * SWARF_NODE_WORDS + (slot >> 6)];
     const uint64_t bit = uint64_t(1) << (slot & 63);
     word = inside ? word | bit : word & ~bit;
@@ -228,6 +255,7 @@ extern "C" void swarf_tree_fill(swarf_tree *tree, size_t node, const int lo[3], 
             for (int z = lo[2]; z <= hi[2]; z++) {
                 const unsigned slot = static_cast<unsigned>(x << 8 | y << 4 | z);
                 holder.addTile(Index(slot), -tree->layout.background, false);
+                stamp(tree, node, slot);
                 words[slot >> 6] |= uint64_t(1) << (slot & 63);
             }
 }
@@ -239,5 +267,5 @@ extern "C" void swarf_tree_size(const swarf_tree *tree, size_t *leaves, size_t *
     *leaves = count;
     *bytes = tree->nodes.size() * sizeof(swarf_vdb_node) +
              count * (sizeof(swarf_vdb_leaf) + SWARF_LEAF_SIZE * sizeof(float)) +
-             tree->occupied.size() * sizeof(uint64_t);
+             tree->occupied.size() * sizeof(uint64_t) + tree->stamps.size() * sizeof(uint32_t);
 }

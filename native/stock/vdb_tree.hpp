@@ -18,6 +18,7 @@ struct swarf_tree {
     openvdb::Coord base;          /* grid index of the layout's voxel (0, 0, 0); multiples of 128 */
     std::vector<swarf_vdb_node *> nodes;
     std::vector<uint64_t> occupied;
+    std::vector<uint32_t> stamps;
 };
 
 /** Take over a level-set grid of half width 3 (uniform voxels, no rotation): every 128^3 node that its bounding box

@@ -53,6 +53,12 @@ SWARF_API void swarf_stock_destroy(swarf_stock *stock);
 SWARF_API double swarf_stock_voxel(const swarf_stock *stock);
 /** Bounding box of the material in mm (to half a voxel); empty (lo > hi) when nothing is left. */
 SWARF_API swarf_status swarf_stock_box(swarf_stock *stock, swarf_box *out);
+/** Raised by every call that changes the stock; never 0. */
+SWARF_API uint32_t swarf_stock_generation(const swarf_stock *stock);
+/** Cubes of 32^3 voxels in which anything may have changed after generation `since` (0: all of them). The first `room`
+ *  of their boxes (mm, halfway to the next voxels) go to `boxes`, their number to `count`. */
+SWARF_API swarf_status swarf_stock_changed(swarf_stock *stock, uint32_t since, swarf_box *boxes, size_t room,
+                                           size_t *count);
 /** Volume in mm3, to the second order of the voxel h: besides 1e-4 of it, right-angled convex edges add up to h^2 / 4
  *  per mm of their length, and concave ones take as much away. */
 SWARF_API swarf_status swarf_stock_volume(swarf_stock *stock, double *out);
