@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Embree over blocks: user geometry with one primitive per block; builds against Embree 3.13 and Embree 4.
+/* Embree over cubes: user geometry with one primitive per cube; builds against Embree 3.13 and Embree 4.
  *
- * Embree walks its tree in float and only proposes blocks; the rays proper, in double, travel beside the packet in
- * the query context and are found by their id, so that hits are as exact for a packet of 16 as for a single ray,
- * whatever width Embree splits the packet into and whatever order it visits blocks in.
+ * Embree walks its tree in float and only proposes cubes; the rays proper, in double, travel beside the packet in the
+ * query context and are found by their id, so that hits are as exact for a packet of 16 as for a single ray, whatever
+ * width Embree splits the packet into and whatever order it visits cubes in. A cube is 64 leaves: the tree over a fine
+ * stock has some thousand primitives, and building it anew after a cut takes a millisecond or two.
  */
 #include "render/embree_scene.h"
 
@@ -20,6 +21,8 @@
 
 struct swarf_accel {
     RTCScene scene;
+    RTCGeometry geometry;
+    const swarf_cube *const *cubes;
 };
 
 namespace {
@@ -35,7 +38,8 @@ using embree_context = RTCIntersectContext;
 
 struct packet {
     embree_context context; /* first: Embree hands back a pointer to it */
-    swarf_ray *rays;
+    swarf_packet *rays;
+    const swarf_ray_kernel *kernel;
 };
 
 /* One for the process, on first use, never released: releasing many crashed Embree 3. */
@@ -53,52 +57,60 @@ swarf_status fail_embree(const char *what)
     return swarf_fail(SWARF_ERROR_INTERNAL, "scene: Embree error %d (%s)", static_cast<int>(error), what);
 }
 
-void block_bounds(const RTCBoundsFunctionArguments *args)
+const swarf_cube *cube_of(const void *user, unsigned number)
 {
-    const swarf_block &block = static_cast<const swarf_block *>(args->geometryUserPtr)[args->primID];
-    RTCBounds &out = *args->bounds_o;
-    const float padding = bounds_padding;
-    out.lower_x = static_cast<float>(block.ijk[0] + block.lo[0]) - padding;
-    out.lower_y = static_cast<float>(block.ijk[1] + block.lo[1]) - padding;
-    out.lower_z = static_cast<float>(block.ijk[2] + block.lo[2]) - padding;
-    out.upper_x = static_cast<float>(block.ijk[0] + block.hi[0]) + padding;
-    out.upper_y = static_cast<float>(block.ijk[1] + block.hi[1]) + padding;
-    out.upper_z = static_cast<float>(block.ijk[2] + block.hi[2]) + padding;
+    return static_cast<const swarf_accel *>(user)->cubes[number];
 }
 
-void block_intersect(const RTCIntersectFunctionNArguments *args)
+void cube_bounds(const RTCBoundsFunctionArguments *args)
 {
-    const swarf_block &block = static_cast<const swarf_block *>(args->geometryUserPtr)[args->primID];
+    const swarf_cube &cube = *cube_of(args->geometryUserPtr, args->primID);
+    RTCBounds &out = *args->bounds_o;
+    const float padding = bounds_padding;
+    out.lower_x = static_cast<float>(cube.corner[0] + cube.lo[0]) - padding;
+    out.lower_y = static_cast<float>(cube.corner[1] + cube.lo[1]) - padding;
+    out.lower_z = static_cast<float>(cube.corner[2] + cube.lo[2]) - padding;
+    out.upper_x = static_cast<float>(cube.corner[0] + cube.hi[0]) + padding;
+    out.upper_y = static_cast<float>(cube.corner[1] + cube.hi[1]) + padding;
+    out.upper_z = static_cast<float>(cube.corner[2] + cube.hi[2]) + padding;
+}
+
+void cube_intersect(const RTCIntersectFunctionNArguments *args)
+{
     packet *const p = reinterpret_cast<packet *>(args->context);
     RTCRayN *const ray = RTCRayHitN_RayN(args->rayhit, args->N);
     RTCHitN *const hit = RTCRayHitN_HitN(args->rayhit, args->N);
+    unsigned active = 0;
+    for (unsigned lane = 0; lane < args->N; lane++)
+        if (args->valid[lane]) active |= 1u << RTCRayN_id(ray, args->N, lane);
+    const unsigned hits = p->kernel->trace(cube_of(args->geometryUserPtr, args->primID), args->primID, p->rays, active);
+    if (!hits) return;
     for (unsigned lane = 0; lane < args->N; lane++) {
-        if (!args->valid[lane]) continue;
-        swarf_ray &exact = p->rays[RTCRayN_id(ray, args->N, lane)];
-        if (!swarf_block_intersect(&block, args->primID, &exact)) continue;
-        /* Rounded up, or a block with a hit at the very same place might not be proposed any more. */
+        const unsigned id = RTCRayN_id(ray, args->N, lane);
+        if (!args->valid[lane] || !(hits >> id & 1)) continue;
+        /* Rounded up, or a cube with a hit at the very same place might not be proposed any more. */
         RTCRayN_tfar(ray, args->N, lane) =
-            std::nextafter(static_cast<float>(exact.t), std::numeric_limits<float>::infinity());
+            std::nextafter(static_cast<float>(p->rays->t[id]), std::numeric_limits<float>::infinity());
         RTCHitN_geomID(hit, args->N, lane) = args->geomID;
         RTCHitN_primID(hit, args->N, lane) = args->primID;
     }
 }
 
-/** Fill lane `lane` of Embree's ray arrays (N lanes) from `ray`. */
-void load_lane(RTCRayHitN *rayhit, unsigned n, unsigned lane, const swarf_ray &ray)
+/** Fill lane `lane` of Embree's ray arrays (N lanes) from ray `id`. */
+void load_lane(RTCRayHitN *rayhit, unsigned n, unsigned lane, const swarf_packet &rays, unsigned id)
 {
     RTCRayN *const out = RTCRayHitN_RayN(rayhit, n);
-    RTCRayN_org_x(out, n, lane) = static_cast<float>(ray.origin[0]);
-    RTCRayN_org_y(out, n, lane) = static_cast<float>(ray.origin[1]);
-    RTCRayN_org_z(out, n, lane) = static_cast<float>(ray.origin[2]);
-    RTCRayN_dir_x(out, n, lane) = static_cast<float>(ray.direction[0]);
-    RTCRayN_dir_y(out, n, lane) = static_cast<float>(ray.direction[1]);
-    RTCRayN_dir_z(out, n, lane) = static_cast<float>(ray.direction[2]);
+    RTCRayN_org_x(out, n, lane) = static_cast<float>(rays.origin[0][id]);
+    RTCRayN_org_y(out, n, lane) = static_cast<float>(rays.origin[1][id]);
+    RTCRayN_org_z(out, n, lane) = static_cast<float>(rays.origin[2][id]);
+    RTCRayN_dir_x(out, n, lane) = static_cast<float>(rays.direction[0][id]);
+    RTCRayN_dir_y(out, n, lane) = static_cast<float>(rays.direction[1][id]);
+    RTCRayN_dir_z(out, n, lane) = static_cast<float>(rays.direction[2][id]);
     RTCRayN_tnear(out, n, lane) = 0;
-    RTCRayN_tfar(out, n, lane) = std::numeric_limits<float>::infinity();
+    RTCRayN_tfar(out, n, lane) = static_cast<float>(rays.t[id]);
     RTCRayN_time(out, n, lane) = 0;
     RTCRayN_mask(out, n, lane) = ~0u;
-    RTCRayN_id(out, n, lane) = lane;
+    RTCRayN_id(out, n, lane) = id;
     RTCRayN_flags(out, n, lane) = 0;
     RTCHitN_geomID(RTCRayHitN_HitN(rayhit, n), n, lane) = RTC_INVALID_GEOMETRY_ID;
     RTCHitN_instID(RTCRayHitN_HitN(rayhit, n), n, lane, 0) = RTC_INVALID_GEOMETRY_ID;
@@ -106,38 +118,24 @@ void load_lane(RTCRayHitN *rayhit, unsigned n, unsigned lane, const swarf_ray &r
 
 } // namespace
 
-extern "C" swarf_status swarf_accel_create(const swarf_block *blocks, size_t count, swarf_accel **out)
+extern "C" swarf_status swarf_accel_create(swarf_accel **out)
 {
     return swarf_guard("scene", [&]() -> swarf_status {
         RTCDevice device = shared_device();
         if (!device)
             return swarf_fail(SWARF_ERROR_INTERNAL, "scene: Embree does not start (error %d)",
                               static_cast<int>(rtcGetDeviceError(nullptr)));
-        if (count > 0xfffffffeu) return swarf_fail(SWARF_ERROR_MEMORY, "scene: %zu blocks are too many", count);
-        RTCScene scene = rtcNewScene(device);
-        if (!scene) return fail_embree("new scene");
-        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-        if (!geometry) {
-            rtcReleaseScene(scene);
-            return fail_embree("new geometry");
+        swarf_accel *accel = new swarf_accel{rtcNewScene(device), nullptr, nullptr};
+        if (accel->scene) accel->geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+        if (!accel->geometry) {
+            swarf_accel_destroy(accel);
+            return fail_embree("new scene");
         }
-        rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
-        rtcSetGeometryUserData(geometry, const_cast<swarf_block *>(blocks));
-        rtcSetGeometryBoundsFunction(geometry, block_bounds, nullptr);
-        rtcSetGeometryIntersectFunction(geometry, block_intersect);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene, geometry);
-        rtcReleaseGeometry(geometry);
-        rtcCommitScene(scene);
-        const RTCError error = rtcGetDeviceError(device);
-        swarf_accel *accel = error == RTC_ERROR_NONE ? new (std::nothrow) swarf_accel{scene} : nullptr;
-        if (!accel) {
-            rtcReleaseScene(scene);
-            return error == RTC_ERROR_NONE || error == RTC_ERROR_OUT_OF_MEMORY
-                       ? swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory for %zu blocks", count)
-                       : swarf_fail(SWARF_ERROR_INTERNAL, "scene: Embree error %d", static_cast<int>(error));
-        }
+        rtcSetSceneFlags(accel->scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
+        rtcSetGeometryUserData(accel->geometry, accel);
+        rtcSetGeometryBoundsFunction(accel->geometry, cube_bounds, nullptr);
+        rtcSetGeometryIntersectFunction(accel->geometry, cube_intersect);
+        rtcAttachGeometry(accel->scene, accel->geometry);
         *out = accel;
         return SWARF_OK;
     });
@@ -146,14 +144,39 @@ extern "C" swarf_status swarf_accel_create(const swarf_block *blocks, size_t cou
 extern "C" void swarf_accel_destroy(swarf_accel *accel)
 {
     if (!accel) return;
-    rtcReleaseScene(accel->scene);
+    if (accel->geometry) rtcReleaseGeometry(accel->geometry);
+    if (accel->scene) rtcReleaseScene(accel->scene);
     delete accel;
 }
 
-extern "C" void swarf_accel_trace(const swarf_accel *accel, swarf_ray *rays, unsigned count)
+static void commit(swarf_accel *accel, const swarf_cube *const *cubes, size_t count)
+{
+    accel->cubes = cubes;
+    rtcSetGeometryUserPrimitiveCount(accel->geometry, static_cast<unsigned>(count));
+    rtcCommitGeometry(accel->geometry);
+    rtcCommitScene(accel->scene);
+}
+
+extern "C" swarf_status swarf_accel_set(swarf_accel *accel, const swarf_cube *const *cubes, size_t count)
+{
+    return swarf_guard("scene", [&]() -> swarf_status {
+        if (count > 0xfffffffeu) return swarf_fail(SWARF_ERROR_MEMORY, "scene: %zu cubes are too many", count);
+        (void)rtcGetDeviceError(shared_device());
+        commit(accel, cubes, count);
+        const RTCError error = rtcGetDeviceError(shared_device());
+        if (error == RTC_ERROR_NONE) return SWARF_OK;
+        commit(accel, nullptr, 0);
+        return error == RTC_ERROR_OUT_OF_MEMORY
+                   ? swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory for %zu cubes", count)
+                   : swarf_fail(SWARF_ERROR_INTERNAL, "scene: Embree error %d", static_cast<int>(error));
+    });
+}
+
+extern "C" void swarf_accel_trace(const swarf_accel *accel, swarf_packet *rays, unsigned active)
 {
     packet p;
     p.rays = rays;
+    p.kernel = swarf_ray_kernel_current();
 #if RTC_VERSION_MAJOR >= 4
     rtcInitRayQueryContext(&p.context);
     RTCIntersectArguments arguments;
@@ -166,9 +189,11 @@ extern "C" void swarf_accel_trace(const swarf_accel *accel, swarf_ray *rays, uns
     p.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     RTCIntersectContext *const query = &p.context;
 #endif
-    if (count == 1) {
+    if (active == 0) return;
+    const unsigned first = static_cast<unsigned>(__builtin_ctz(active));
+    if ((active & (active - 1)) == 0) {
         RTCRayHit single;
-        load_lane(reinterpret_cast<RTCRayHitN *>(&single), 1, 0, rays[0]);
+        load_lane(reinterpret_cast<RTCRayHitN *>(&single), 1, 0, *rays, first);
 #if RTC_VERSION_MAJOR >= 4
         rtcIntersect1(accel->scene, &single, query);
 #else
@@ -176,12 +201,13 @@ extern "C" void swarf_accel_trace(const swarf_accel *accel, swarf_ray *rays, uns
 #endif
         return;
     }
-    alignas(64) int valid[16];
+    alignas(64) int valid[SWARF_PACKET];
     RTCRayHit16 packet16;
-    for (unsigned lane = 0; lane < 16; lane++) {
-        valid[lane] = lane < count ? -1 : 0;
+    for (unsigned lane = 0; lane < SWARF_PACKET; lane++) {
+        const bool is_active = active >> lane & 1;
+        valid[lane] = is_active ? -1 : 0;
         /* Idle lanes repeat a ray: Embree may look at their numbers before the mask. */
-        load_lane(reinterpret_cast<RTCRayHitN *>(&packet16), 16, lane, rays[lane < count ? lane : 0]);
+        load_lane(reinterpret_cast<RTCRayHitN *>(&packet16), SWARF_PACKET, lane, *rays, is_active ? lane : first);
     }
 #if RTC_VERSION_MAJOR >= 4
     rtcIntersect16(valid, accel->scene, &packet16, query);

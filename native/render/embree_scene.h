@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* The Embree side of a scene behind a C face: which blocks a ray meets. */
+/* The Embree side of a scene behind a C face: which cubes a ray meets. */
 #ifndef SWARF_RENDER_EMBREE_SCENE_H
 #define SWARF_RENDER_EMBREE_SCENE_H
 
-#include "render/block.h"
-#include "swarf/base.h"
+#include "render/ray_kernel.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -12,13 +11,16 @@ extern "C" {
 
 typedef struct swarf_accel swarf_accel;
 
-/** A tree over `count` >= 1 blocks, which must outlive it. */
-swarf_status swarf_accel_create(const swarf_block *blocks, size_t count, swarf_accel **out);
+/** A tree over no cubes. */
+swarf_status swarf_accel_create(swarf_accel **out);
 /** NULL is legal. */
 void swarf_accel_destroy(swarf_accel *accel);
 
-/** First hits of `count` (1 .. 16) rays with t INFINITY, from t = 0 on. Many threads at once. */
-void swarf_accel_trace(const swarf_accel *accel, swarf_ray *rays, unsigned count);
+/** Make the tree one over these cubes, which it borrows; they have cells that stop rays. On failure it has none. */
+swarf_status swarf_accel_set(swarf_accel *accel, const swarf_cube *const *cubes, size_t count);
+
+/** First hits of the rays `active` before their t. Many threads at once. */
+void swarf_accel_trace(const swarf_accel *accel, swarf_packet *rays, unsigned active);
 
 #ifdef __cplusplus
 }

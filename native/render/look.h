@@ -19,7 +19,7 @@ typedef struct swarf_sight {
 typedef struct swarf_look {
     const swarf_scene *scene;
     swarf_camera_frame frame;
-    double back; /**< mm by which rays start behind the eye, so that parallel ones have all of the scene before them */
+    swarf_ray_source source;
 } swarf_look;
 
 /** A view by this camera; the scene has been entered. */
@@ -28,7 +28,8 @@ swarf_status swarf_look_make(const swarf_scene *scene, const swarf_camera *camer
 /** The ray through a place (-1 .. 1) of the picture, its direction of unit length. */
 void swarf_look_ray(const swarf_look *look, const double place[2], double origin[3], double direction[3]);
 
-/** What the rays through up to SWARF_PACKET places meet. Many threads at once. */
-swarf_status swarf_look_through(const swarf_look *look, const double place[][2], unsigned count, swarf_sight out[]);
+/** What the rays through `count` <= SWARF_PACKET places (x[i], y[i]) meet. Many threads at once. */
+void swarf_look_through(const swarf_look *look, const double x[SWARF_PACKET], const double y[SWARF_PACKET],
+                        unsigned count, swarf_sight out[]);
 
 #endif

@@ -17,7 +17,8 @@
 #include <string.h>
 #include <time.h>
 
-enum { PACKET_EDGE = 4, PIXELS_MAX = 16384, SAMPLES_MAX = 4, COARSE_MAX = 16 };
+/* A tile of rays finds in the nearer caches what the rays beside it brought there. */
+enum { TILE = 32, PACKET_EDGE = 4, PIXELS_MAX = 16384, SAMPLES_MAX = 4, COARSE_MAX = 16 };
 
 _Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a square are one packet");
 
@@ -42,38 +43,54 @@ typedef struct picture {
     float (*colour)[4]; /* of the squares */
 } picture;
 
-/** Place -1 .. 1 of sample (i, j) of n * n of a grid square; squares at the right and lower rim may lie partly beyond
- *  the picture. */
-static void place_of(const picture *p, int32_t x, int32_t y, int32_t i, int32_t j, int32_t n, double place[2])
+/** Place -1 .. 1 of the part 0 .. 1 of a grid square; squares at the right and lower rim may lie partly beyond the
+ *  picture. */
+static double place_x(const picture *p, int32_t x, double part)
 {
-    place[0] = 2 * (x + (i + 0.5) / n) * p->coarse / p->options->width - 1;
-    place[1] = 1 - 2 * (y + (j + 0.5) / n) * p->coarse / p->options->height;
+    return 2 * (x + part) * p->coarse / p->options->width - 1;
 }
 
-static swarf_status look_row(void *context, size_t row)
+static double place_y(const picture *p, int32_t y, double part)
+{
+    return 1 - 2 * (y + part) * p->coarse / p->options->height;
+}
+
+/** The square of PACKET_EDGE^2 grid squares from (x0, y0). */
+static void look_packet(const picture *p, int32_t x0, int32_t y0)
+{
+    double place[2][SWARF_PACKET];
+    size_t at[SWARF_PACKET];
+    swarf_sight seen[SWARF_PACKET];
+    unsigned count = 0;
+    for (int32_t y = y0; y < y0 + PACKET_EDGE && y < p->height; y++)
+        for (int32_t x = x0; x < x0 + PACKET_EDGE && x < p->width; x++, count++) {
+            place[0][count] = place_x(p, x, 0.5);
+            place[1][count] = place_y(p, y, 0.5);
+            at[count] = (size_t)y * (size_t)p->width + (size_t)x;
+        }
+    for (unsigned idle = count; idle < SWARF_PACKET; idle++) place[0][idle] = place[1][idle] = 0;
+    swarf_look_through(&p->look, place[0], place[1], count, seen);
+    for (unsigned ray = 0; ray < count; ray++) p->middle[at[ray]] = seen[ray];
+}
+
+static int32_t tiles_across(const picture *p)
+{
+    return (p->width + TILE - 1) / TILE;
+}
+
+static swarf_status look_tile(void *context, size_t index)
 {
     const picture *p = context;
-    const int32_t y0 = (int32_t)row * PACKET_EDGE;
-    for (int32_t x0 = 0; x0 < p->width; x0 += PACKET_EDGE) {
-        double place[SWARF_PACKET][2];
-        size_t at[SWARF_PACKET];
-        swarf_sight seen[SWARF_PACKET];
-        unsigned count = 0;
-        for (int32_t y = y0; y < y0 + PACKET_EDGE && y < p->height; y++)
-            for (int32_t x = x0; x < x0 + PACKET_EDGE && x < p->width; x++, count++) {
-                place_of(p, x, y, 0, 0, 1, place[count]);
-                at[count] = (size_t)y * (size_t)p->width + (size_t)x;
-            }
-        SWARF_TRY(swarf_look_through(&p->look, (const double(*)[2])place, count, seen));
-        for (unsigned ray = 0; ray < count; ray++) p->middle[at[ray]] = seen[ray];
-    }
+    const int32_t x0 = (int32_t)index % tiles_across(p) * TILE, y0 = (int32_t)index / tiles_across(p) * TILE;
+    for (int32_t y = y0; y < y0 + TILE && y < p->height; y += PACKET_EDGE)
+        for (int32_t x = x0; x < x0 + TILE && x < p->width; x += PACKET_EDGE) look_packet(p, x, y);
     return SWARF_OK;
 }
 
 static void point_of(const picture *p, int32_t x, int32_t y, double out[3])
 {
-    double place[2], direction[3];
-    place_of(p, x, y, 0, 0, 1, place);
+    const double place[2] = {place_x(p, x, 0.5), place_y(p, y, 0.5)};
+    double direction[3];
     swarf_look_ray(&p->look, place, out, direction);
     const double distance = p->middle[(size_t)y * (size_t)p->width + (size_t)x].distance;
     for (int axis = 0; axis < 3; axis++) out[axis] += distance * direction[axis];
@@ -113,12 +130,11 @@ static int is_rough(const picture *p, int32_t x0, int32_t y0)
 static swarf_status shade_row(void *context, size_t row)
 {
     const picture *p = context;
+    const double height = 0.5 + 0.5 * place_y(p, (int32_t)row, 0.5);
     size_t rough = 0;
     for (int32_t x = 0; x < p->width; x++) {
         const size_t at = row * (size_t)p->width + (size_t)x;
-        double place[2];
-        place_of(p, x, (int32_t)row, 0, 0, 1, place);
-        swarf_shade(&p->shading, &p->middle[at], 0.5 + 0.5 * place[1], p->colour[at]);
+        swarf_shade(&p->shading, &p->middle[at], height, p->colour[at]);
         if (p->options->samples == 1 || !is_rough(p, x, (int32_t)row)) continue;
         p->colour[at][3] = -1; /* until its samples are there */
         rough++;
@@ -143,15 +159,18 @@ static swarf_status sample_some(void *context, size_t index)
     for (size_t number = index * PIECE; number < (index + 1) * PIECE && number < p->rough_count; number++) {
         const size_t at = p->rough[number];
         const int32_t x = (int32_t)(at % (size_t)p->width), y = (int32_t)(at / (size_t)p->width);
-        double place[SWARF_PACKET][2];
+        double place[2][SWARF_PACKET] = {{0}};
         swarf_sight seen[SWARF_PACKET];
         float *sum = p->colour[at];
-        for (int32_t sub = 0; sub < n * n; sub++) place_of(p, x, y, sub % n, sub / n, n, place[sub]);
-        SWARF_TRY(swarf_look_through(&p->look, (const double(*)[2])place, (unsigned)(n * n), seen));
+        for (int32_t sub = 0; sub < n * n; sub++) {
+            place[0][sub] = place_x(p, x, (sub % n + 0.5) / n);
+            place[1][sub] = place_y(p, y, (sub / n + 0.5) / n);
+        }
+        swarf_look_through(&p->look, place[0], place[1], (unsigned)(n * n), seen);
         memset(sum, 0, sizeof *p->colour);
         for (int32_t sub = 0; sub < n * n; sub++) {
             float one[4];
-            swarf_shade(&p->shading, &seen[sub], 0.5 + 0.5 * place[sub][1], one);
+            swarf_shade(&p->shading, &seen[sub], 0.5 + 0.5 * place[1][sub], one);
             for (int channel = 0; channel < 4; channel++) sum[channel] += one[channel] / (float)(n * n);
         }
     }
@@ -164,7 +183,8 @@ static const double looked = 0.5, shaded = 0.6;
 static swarf_status draw(picture *p, const swarf_progress *progress)
 {
     const size_t rows = (size_t)p->height;
-    SWARF_TRY(swarf_parallel_for((rows + PACKET_EDGE - 1) / PACKET_EDGE, look_row, p, progress, 0, looked));
+    SWARF_TRY(
+        swarf_parallel_for((size_t)tiles_across(p) * ((rows + TILE - 1) / TILE), look_tile, p, progress, 0, looked));
     SWARF_TRY(swarf_parallel_for(rows, shade_row, p, progress, looked, shaded));
     for (size_t row = 0; row < rows; row++) p->rough_before[row + 1] += p->rough_before[row];
     p->rough_count = p->rough_before[rows];
@@ -338,16 +358,16 @@ swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, do
     SWARF_TRY(swarf_scene_enter(scene));
     swarf_look look;
     swarf_sight sight;
-    const double place[1][2] = {{x, y}};
+    const double place[2] = {x, y}, xs[SWARF_PACKET] = {x}, ys[SWARF_PACKET] = {y};
     swarf_status status = swarf_look_make(scene, camera, aspect, &look);
-    if (status == SWARF_OK) status = swarf_look_through(&look, place, 1, &sight);
+    if (status == SWARF_OK) swarf_look_through(&look, xs, ys, 1, &sight);
     swarf_scene_leave(scene);
     SWARF_TRY(status);
     swarf_pick pick = {.seen = sight.seen, .move = -1, .depth = NAN};
     for (int axis = 0; axis < 3; axis++) pick.point[axis] = pick.normal[axis] = NAN;
     if (sight.seen != SWARF_SEEN_NOTHING) {
         double direction[3], arm[3];
-        swarf_look_ray(&look, place[0], pick.point, direction);
+        swarf_look_ray(&look, place, pick.point, direction);
         for (int axis = 0; axis < 3; axis++) {
             pick.point[axis] += sight.distance * direction[axis];
             pick.normal[axis] = sight.normal[axis];

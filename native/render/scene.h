@@ -3,22 +3,23 @@
 #ifndef SWARF_RENDER_SCENE_H
 #define SWARF_RENDER_SCENE_H
 
+#include "render/ray_kernel.h"
 #include "swarf/render.h"
 
-/** Most rays of one packet. */
-enum { SWARF_PACKET = 16 };
+/** First hits of a packet. A ray that starts in material meets nothing, and has its bit in *inside (may be NULL). The
+ *  scene has been entered. Many threads at once. */
+void swarf_scene_trace(const swarf_scene *scene, swarf_rays *rays, unsigned *inside);
 
-/** First hits of up to SWARF_PACKET rays, as swarf_scene_cast() without its checks: all numbers are finite, no
- *  direction is zero, the stock has been entered. Many threads at once. */
-swarf_status swarf_scene_trace(const swarf_scene *scene, const double *origin, const double *direction, unsigned count,
-                               double *distance, float *normal);
-
-/** Keep others from changing the stock while rays run over it: SWARF_ERROR_BUSY when it is in use. */
-swarf_status swarf_scene_enter(const swarf_scene *scene);
-void swarf_scene_leave(const swarf_scene *scene);
+/** Keep others from changing the stock while rays run over it, and bring the scene up to date with it:
+ *  SWARF_ERROR_BUSY when it is in use. */
+swarf_status swarf_scene_enter(swarf_scene *scene);
+void swarf_scene_leave(swarf_scene *scene);
 
 /** Box of the surface in mm, empty when there is none. */
 void swarf_scene_box(const swarf_scene *scene, swarf_box *out);
+
+/** Edge of a voxel, mm. */
+double swarf_scene_voxel(const swarf_scene *scene);
 
 /** Milliseconds that a ray of a picture takes, from what the pictures before took. */
 double swarf_scene_ray_ms(const swarf_scene *scene);

@@ -2,6 +2,7 @@
 #include "render/shade.h"
 
 #include <math.h>
+#include <pthread.h>
 
 /* A. Gooch, B. Gooch, P. Shirley, E. Cohen: A Non-Photorealistic Lighting Model for Automatic Technical Illustration,
  * SIGGRAPH 1998, section 4.2: blue and yellow shifts, and how much of the object's colour each side shows. */
@@ -9,10 +10,24 @@ static const float gooch_blue = 0.4f, gooch_yellow = 0.4f, gooch_alpha = 0.2f, g
 /* Towards the light in the camera's right, up and backward: over the left shoulder. */
 static const double light_camera[3] = {-0.5, 0.7, 0.6};
 
+/* IEC 61966-2-1 in eight bits, by linear value. At black, where it is steepest, an entry is a quarter of a step. */
+enum { SRGB_SIZE = 1 << 14 };
+static uint8_t srgb[SRGB_SIZE + 1];
+static pthread_once_t srgb_once = PTHREAD_ONCE_INIT;
+
+static void fill_srgb(void)
+{
+    for (int i = 0; i <= SRGB_SIZE; i++) {
+        const double x = (double)i / SRGB_SIZE;
+        srgb[i] = (uint8_t)((x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055) * 255 + 0.5);
+    }
+}
+
 void swarf_shading_make(const swarf_look *look, const swarf_picture_options *options, swarf_shading *out)
 {
     const swarf_camera_frame *frame = &look->frame;
     double length = 0;
+    pthread_once(&srgb_once, fill_srgb);
     for (int axis = 0; axis < 3; axis++) length += light_camera[axis] * light_camera[axis];
     out->options = options;
     for (int axis = 0; axis < 3; axis++)
@@ -47,16 +62,16 @@ void swarf_shade(const swarf_shading *shading, const swarf_sight *sight, double 
     out[3] = 1;
 }
 
-static uint8_t to_srgb(float linear)
+static float clamp01(float x)
 {
-    const float x = fminf(fmaxf(linear, 0), 1);
-    const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1 / 2.4f) - 0.055f;
-    return (uint8_t)(encoded * 255 + 0.5f);
+    return x > 0 ? (x < 1 ? x : 1) : 0;
 }
 
 void swarf_shade_resolve(const float sum[4], float weight, uint8_t out[4])
 {
     const float alpha = sum[3] * weight;
-    for (int channel = 0; channel < 3; channel++) out[channel] = alpha > 0 ? to_srgb(sum[channel] * weight / alpha) : 0;
-    out[3] = (uint8_t)(fminf(fmaxf(alpha, 0), 1) * 255 + 0.5f);
+    const float scale = alpha > 0 ? weight / alpha : 0;
+    for (int channel = 0; channel < 3; channel++)
+        out[channel] = srgb[(int)(clamp01(sum[channel] * scale) * SRGB_SIZE + 0.5f)];
+    out[3] = (uint8_t)(clamp01(alpha) * 255 + 0.5f);
 }

@@ -1,0 +1,4 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* The tracing kernels for avx2; see ray_body.h. */
+#define KERNEL_NAME swarf_ray_kernel_avx2
+#include "render/ray_body.h"

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "render/ray_kernel.h"
+
+const swarf_ray_kernel *swarf_ray_kernel_current(void)
+{
+    switch (swarf_isa_current()) {
+#if defined(SWARF_HAVE_X86)
+    case SWARF_ISA_AVX512: return &swarf_ray_kernel_avx512;
+    case SWARF_ISA_AVX2: return &swarf_ray_kernel_avx2;
+#endif
+    default: return &swarf_ray_kernel_scalar;
+    }
+}

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* What the benchmarks share: their fixed jobs, and a clock. */
+#ifndef SWARF_BENCH_JOBS_H
+#define SWARF_BENCH_JOBS_H
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "test.h"
+
+typedef struct bench_job {
+    const char *name;
+    const char *cutter;
+    swarf_box box;
+} bench_job;
+
+/* The jobs of the prototype this is measured against, to the digit. */
+static const bench_job bench_jobs[] = {
+    {"bear", "flat:d=3,l=18", {{0, 0, -20}, {80, 80, 0}}},
+    {"cameo", "ball:d=2,l=4", {{-83.6, -104.153, -6}, {83.6, 103.747, 0}}},
+};
+
+static inline const bench_job *bench_job_find(const char *name)
+{
+    for (size_t i = 0; i < sizeof bench_jobs / sizeof *bench_jobs; i++)
+        if (strcmp(name, bench_jobs[i].name) == 0) return &bench_jobs[i];
+    return NULL;
+}
+
+static inline double bench_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/** Seconds of all threads' processor time. */
+static inline double bench_cpu(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static inline void bench_must(swarf_status status)
+{
+    if (status == SWARF_OK) return;
+    fprintf(stderr, "benchmark: %s\n", swarf_error_last());
+    exit(2);
+}
+
+/** Voxel with which the longest edge of the stock has `resolution` of them. */
+static inline double bench_job_voxel(const bench_job *job, int resolution)
+{
+    double longest = 0;
+    for (int i = 0; i < 3; i++)
+        if (job->box.hi[i] - job->box.lo[i] > longest) longest = job->box.hi[i] - job->box.lo[i];
+    return longest / resolution;
+}
+
+/** The program of a job; released by the caller. Exits with 77 when the data are not there. */
+static inline swarf_program *bench_job_program(const bench_job *job)
+{
+    char path[2048];
+    if (!test_shared()[0]) {
+        fprintf(stderr, "benchmark: skipped, no folder of shared data: set SWARF_SHARED\n");
+        exit(77);
+    }
+    snprintf(path, sizeof path, "%s/data/%s.nc", test_shared(), job->name);
+    swarf_gcode_options options = swarf_gcode_options_default();
+    options.start[0] = options.start[1] = 0;
+    options.start[2] = 50;
+    swarf_program *program = NULL;
+    bench_must(swarf_gcode_read_file(path, &options, NULL, &program));
+    return program;
+}
+
+/** The paths of a job's moves; freed by the caller. */
+static inline swarf_path *bench_job_paths(const bench_job *job, size_t *count)
+{
+    swarf_program *program = bench_job_program(job);
+    const size_t moves = swarf_program_move_count(program);
+    swarf_path *paths = malloc((moves + 1) * sizeof *paths);
+    if (!paths) exit(2);
+    *count = 0;
+    for (size_t i = 0; i < moves; i++) {
+        bench_must(swarf_program_path(program, i, &paths[*count]));
+        *count += paths[*count].has_motion != 0;
+    }
+    swarf_program_release(program);
+    return paths;
+}
+
+#endif
