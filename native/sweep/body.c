@@ -18,10 +18,12 @@ typedef struct face {
     double first, last;                /* angle of the normal at its lower and upper end */
 } face;
 
-/* A chain of faces with normals that only turn upwards, between the heights its component is clipped at. */
+/* A chain of faces with normals that only turn upwards, between the heights its component is clipped at, and within the
+ * radius at which its faces would leave the profile. */
 typedef struct chain {
     size_t first, count;
     double lo, hi; /* -INFINITY / INFINITY: closed by itself */
+    double wall;   /* INFINITY: none */
 } chain;
 
 typedef struct outline {
@@ -101,10 +103,10 @@ static swarf_status add_chords(outline *o, const swarf_profile_piece *p)
     return SWARF_OK;
 }
 
-/* Radius of a chain's component at a height, by its faces alone; below 0 where there is nothing. */
+/* Radius of a chain's component at a height, by its faces and wall; below 0 where there is nothing. */
 static double chain_radius(const outline *o, const chain *c, double z)
 {
-    double least = INFINITY;
+    double least = c->wall;
     for (size_t i = c->first; i < c->first + c->count; i++) {
         const face *f = &o->faces[i];
         const double s = f->radius > 0 ? (z - f->centre_z) / f->radius : 0;
@@ -124,43 +126,85 @@ static double chain_radius(const outline *o, const chain *c, double z)
     return least;
 }
 
-/* The height from `start` towards `end` up to which the chain's component stays inside the whole profile. */
-static double reach(const outline *o, const chain *c, double start, double end)
+/* Greatest radius of the chain's own faces: at a node, as arcs are split where they are vertical. */
+static double face_radius(const outline *o, const chain *c)
+{
+    double most = 0;
+    for (size_t i = c->first; i < c->first + c->count; i++) most = fmax(most, fmax(o->faces[i].r0, o->faces[i].r1));
+    return most;
+}
+
+/* Is the chain's component inside the whole profile at this height? */
+static int fits(const outline *o, const chain *c, double z)
+{
+    const double slack = 1e-7 + 0.01 * o->tolerance;
+    return chain_radius(o, c, z) <= swarf_cutter_radius_at(o->cutter, o->kind, z) + slack;
+}
+
+/* The height from `start` towards `end` up to which the chain's component stays inside the whole profile. Where its
+ * faces would first leave it the component gets a wall, so that it stays as thick as the profile allows: under a hollow
+ * face many components lie side by side, and the depth of one is right only while no inner border is nearer. */
+static double reach(const outline *o, chain *c, double start, double end)
 {
     /* fine enough for any profile with features above a five-hundredth of its length; nodes are seen besides */
     enum { STEPS = 512 };
     double inside = start;
     for (int i = 1; i <= STEPS; i++) {
         double z = start + (end - start) * i / STEPS;
-        const double own = chain_radius(o, c, z);
-        if (own < 0) return end > start ? INFINITY : -INFINITY; /* closed by its own faces */
-        const double slack = 1e-7 + 0.01 * o->tolerance;
-        if (own <= swarf_cutter_radius_at(o->cutter, o->kind, z) + slack) {
+        if (chain_radius(o, c, z) < 0) return end > start ? INFINITY : -INFINITY; /* closed by its own faces */
+        if (fits(o, c, z)) {
             inside = z;
             continue;
         }
+        const double step = z;
         for (int k = 0; k < 60; k++) {
             const double middle = 0.5 * (inside + z);
-            if (chain_radius(o, c, middle) <= swarf_cutter_radius_at(o->cutter, o->kind, middle) + slack)
+            if (fits(o, c, middle))
                 inside = middle;
             else
                 z = middle;
         }
-        return inside;
+        if (chain_radius(o, c, inside) < face_radius(o, c)) return inside; /* a wall there would cut its own faces */
+        c->wall = fmin(chain_radius(o, c, inside), swarf_cutter_radius_at(o->cutter, o->kind, inside));
+        if (!fits(o, c, step)) return inside;
+        inside = step;
     }
     return end;
 }
 
-/* Is all of chain a within chain b? Then a need not be swept. */
+/* Where the line that continues a face would meet a radius, within lo .. hi; `lo` when it does not. */
+static double height_at_radius(const face *f, int above, double radius, double lo, double hi)
+{
+    const double angle = above ? f->last : f->first, r = above ? f->r1 : f->r0, z = above ? f->z1 : f->z0;
+    if (fabs(sin(angle)) < same_angle || !isfinite(radius)) return lo;
+    return fmax(lo, fmin(hi, z - (radius - r) * cos(angle) / sin(angle)));
+}
+
+static int within_at(const outline *o, const chain *a, const chain *b, double z)
+{
+    const double own = chain_radius(o, a, z);
+    return own <= 0 || (z >= b->lo - tiny && z <= b->hi + tiny && own <= chain_radius(o, b, z) + tiny);
+}
+
+/* Is all of chain a within chain b? Then a need not be swept. Asked at even steps, at b's nodes and where b's ends meet
+ * its wall: between those the radius of b is a line or an arc. */
 static int contained(const outline *o, const chain *a, const chain *b)
 {
+    enum { STEPS = 256 };
     const double lo = fmax(o->z_lo, a->lo), hi = fmin(o->z_hi, a->hi);
-    for (int i = 0; i <= 256; i++) {
-        const double z = lo + (hi - lo) * i / 256;
-        const double own = chain_radius(o, a, z);
-        if (own <= 0) continue;
-        if (z < b->lo - tiny || z > b->hi + tiny || own > chain_radius(o, b, z) + tiny) return 0;
+    for (int i = 0; i <= STEPS; i++)
+        if (!within_at(o, a, b, lo + (hi - lo) * i / STEPS)) return 0;
+    for (size_t i = b->first; i < b->first + b->count; i++) {
+        const face *f = &o->faces[i];
+        const double at[] = {f->z0, f->z1, height_at_radius(f, 0, b->wall, lo, hi),
+                             height_at_radius(f, 1, b->wall, lo, hi)};
+        for (size_t k = 0; k < sizeof at / sizeof at[0]; k++)
+            if (!within_at(o, a, b, fmax(lo, fmin(hi, at[k])))) return 0;
     }
+    for (size_t i = a->first; i < a->first + a->count; i++)
+        if (!within_at(o, a, b, fmax(lo, fmin(hi, o->faces[i].z0))) ||
+            !within_at(o, a, b, fmax(lo, fmin(hi, o->faces[i].z1))))
+            return 0;
     return 1;
 }
 
@@ -184,7 +228,7 @@ static swarf_status collect_chains(outline *o, size_t first_face)
         size_t end = i + 1;
         while (end < o->face_count && o->faces[end].first >= o->faces[end - 1].last - same_angle) end++;
         SWARF_TRY(swarf_array_reserve((void **)&o->chains, &o->chain_room, o->chain_count + 1, sizeof *o->chains));
-        o->chains[o->chain_count++] = (chain){i, end - i, -INFINITY, INFINITY};
+        o->chains[o->chain_count++] = (chain){i, end - i, -INFINITY, INFINITY, INFINITY};
         i = end;
     }
     return SWARF_OK;
@@ -262,8 +306,9 @@ static swarf_status emit(const outline *o, double voxel, swarf_body *body)
         if (isfinite(c->hi))
             body->pieces[body->piece_count++] =
                 (swarf_piece){.radius = (float)(c->hi / voxel), .first_z = 1, .last_z = 1, .upper = 1};
-        /* A plunge draws the lower and the upper border apart: what closes it between them is the widest place. */
-        if (!has_side(o, c))
+        /* A plunge draws the lower and the upper border apart: what closes it between them is the widest place or
+         * the wall. */
+        if (!has_side(o, c) || isfinite(c->wall))
             body->pieces[body->piece_count++] =
                 (swarf_piece){.radius = (float)(widest(o, c) / voxel), .first_r = 1, .last_r = 1};
         component->count = body->piece_count - component->first;
@@ -289,7 +334,8 @@ static void find_core(const outline *o, double voxel, swarf_body *body)
             least = fmin(least, radius[j]);
             if (least * least * (j - i) <= best) continue;
             best = least * least * (j - i);
-            body->core_radius = (float)(least / voxel);
+            /* the slack of fits() must not make it wider than the whole: bounds would cross */
+            body->core_radius = fminf((float)(least / voxel), body->radius);
             body->core_lo = (float)((o->z_lo + (o->z_hi - o->z_lo) * i / LEVELS) / voxel);
             body->core_hi = (float)((o->z_lo + (o->z_hi - o->z_lo) * j / LEVELS) / voxel);
         }

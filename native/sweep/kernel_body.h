@@ -329,6 +329,34 @@ INLINE struct moment at_moment(const swarf_body *body, const swarf_component *co
     return m;
 }
 
+/* Greatest value at moment t among the pieces that only recede from the points from there on (sense 1: as t grows, at
+ * the start of the line; -1: as it falls, at its end): the faces that close what the component sweeps. */
+INLINE lanes face_at_end(const swarf_body *body, const swarf_component *component, const struct tilt *tilt, lanes t,
+                         float sense)
+{
+    const lanes u = tilt->s - t * tilt->run, height = tilt->height - t * tilt->rise;
+    const lanes rho = root(u * u + tilt->w2);
+    const lanes along = u / maximum(rho, all(1e-9f)) * (sense * tilt->run);
+    const float rise = sense * tilt->rise;
+    lanes value = all(-far_away);
+    for (size_t k = component->first; k < component->first + component->count; k++) {
+        const swarf_piece *p = &body->pieces[k];
+        lanes own = rho * p->first_r + height * p->first_z - p->radius, nr = all(p->first_r), nz = all(p->first_z);
+        if (p->is_arc) {
+            const lanes v = rho - p->centre_r, h = height - p->centre_z;
+            const lanes first = v * p->first_r + h * p->first_z, last = v * p->last_r + h * p->last_z;
+            const mask within = both(less(v * p->first_z, h * p->first_r), less(h * p->last_r, v * p->last_z));
+            const lanes length = root(v * v + h * h), unit = all(1) / maximum(length, all(1e-9f));
+            const mask upper = less(first, last);
+            own = pick(within, length, pick(upper, last, first)) - p->radius;
+            nr = pick(within, v * unit, pick(upper, all(p->last_r), all(p->first_r)));
+            nz = pick(within, h * unit, pick(upper, all(p->last_z), all(p->first_z)));
+        }
+        value = pick(less(all(0), nr * along + nz * rise), value, maximum(value, own));
+    }
+    return value;
+}
+
 INLINE struct moment pick_moment(mask m, struct moment a, struct moment b)
 {
     return (struct moment){pick(m, a.value, b.value), pick(m, a.slope, b.slope), pick(m, a.along, b.along),
@@ -399,6 +427,12 @@ static __attribute__((noinline)) void general_tilted(const swarf_body *body, con
             const lanes length = maximum(root(along * along + across * across + up * up), all(0.1f));
             tangents_meet(a, b, &at_a, &at_b, &bound);
             lanes value = pick(inner, bound / minimum(length, all(1)), pick(falls, at_b.value, at_a.value));
+            /* inside, a face at the line's ends may be nearer than the one along it, whose distance was scaled */
+            if (bits(both(inner, less(value, all(0))))) {
+                const lanes ends = maximum(face_at_end(body, component, &tilt, first, 1),
+                                           face_at_end(body, component, &tilt, maximum(first, last), -1));
+                value = pick(inner, pick(less(value, all(0)), maximum(value, minimum(ends, all(0))), value), value);
+            }
             value = pick(never, all(far_away), value);
             best[z] = minimum(best[z], value);
         }
@@ -437,10 +471,12 @@ static __attribute__((noinline)) void cylinder_seam(float m, float radius, lanes
     const lanes chord2 = maximum(all(0), all(radius * radius) - w * w), chord = root(chord2);
     const lanes scale = chord / root(chord2 + m * m * radius * radius);
     const struct slant top = slant_at(aside, chord, scale, m, radius);
-    const struct slant under = seam ? slant_at(aside, chord, all(1), m, radius) : top;
+    const struct slant beyond = slant_at(aside, chord, all(1), m, radius);
     const lanes at = s * m + bottom;
     for (int z = 0; z < 8; z++) {
-        const lanes below = maximum(all(low - (float)z), slant_value(&under, at - (float)z));
+        lanes under = slant_value(&top, at - (float)z);
+        if (seam) under = maximum(under, slant_value(&beyond, at - (float)z));
+        const lanes below = maximum(all(low - (float)z), under);
         const lanes above = maximum(all((float)z - high), slant_value(&top, all((float)z - length) - at));
         best[z] = minimum(best[z], maximum(side, maximum(below, above)));
     }
@@ -448,7 +484,8 @@ static __attribute__((noinline)) void cylinder_seam(float m, float radius, lanes
 
 /* Cylinders on lines. Tilted: side, lowest bottom, and the slanted surface that the trailing edge of the bottom leaves,
  * scaled to unit gradient; likewise at the top. Never switched between, so that the band has no tears. `seam`: the
- * bottom lies inside of something else and only has to be on the right side. */
+ * bottom lies inside of something else, which gives the distance beyond it: there it only must not be too near, so that
+ * it is not scaled. */
 INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
                           int seam, lanes best[8])
 {
@@ -475,10 +512,12 @@ INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t
     }
     const int top_near = low + length - SWARF_HALF_WIDTH < 7; /* of a long cutter it mostly is far above */
     const lanes chord2 = maximum(all(0), all(radius * radius) - w2), chord = root(chord2);
-    const lanes scale = chord / root(chord2 + m * m * radius * radius), bottom_scale = seam ? all(1) : scale;
-    const lanes under = ((s - chord) * m + bottom) * bottom_scale;
+    const lanes scale = chord / root(chord2 + m * m * radius * radius);
+    const lanes under = (s - chord) * m + bottom;
     for (int z = 0; z < 8; z++) {
-        const lanes value = maximum(maximum(side, all(low - (float)z)), under - bottom_scale * (float)z);
+        const lanes slanted = under - (float)z;
+        lanes value = maximum(maximum(side, all(low - (float)z)), slanted * scale);
+        if (seam) value = maximum(value, slanted);
         if (!top_near)
             best[z] = minimum(best[z], value);
         else {

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/status.h"
 #include "swarf/sweep.h"
+#include "sweep/body.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -47,8 +48,9 @@ static swarf_status append_chords(swarf_track_list *list, const swarf_path *path
                                   double radius, const int axis[2], const double centre[3])
 {
     /* A chord of angle s lies inside its arc by at most radius * (1 - cos(s / 2)), two thirds of that on average: with
-     * its ends that much outside the arc it removes as much as the arc does, and leaves it by two thirds at most. */
-    const double inside = fmin(1, SWARF_SWEEP_BOUND / fmax(radius, 1e-9));
+     * its ends that much outside the arc it removes as much as the arc does, and leaves it by two thirds at most. Half
+     * of the bound goes to this, half to the joints. */
+    const double inside = fmin(1, 0.5 * SWARF_SWEEP_BOUND / fmax(radius, 1e-9));
     const double step = fmin(0.5 * M_PI, 2 * acos(1 - inside));
     const double outwards = 1 + 2.0 / 3.0 * (1 - cos(0.5 * step));
     const double steps = ceil(fabs(path->arc.angle_rad) / step);
@@ -57,6 +59,10 @@ static swarf_status append_chords(swarf_track_list *list, const swarf_path *path
         return swarf_fail(SWARF_ERROR_ARGUMENT, "arc: %g turns of radius %g voxels are too many",
                           path->arc.angle_rad / (2 * M_PI), radius);
     const size_t count = steps < 1 ? 1 : (size_t)steps;
+    /* Beside the joint of two chords the nearest point would be the end of both, where edges of the cutter have no unit
+     * gradient: chords go on a little, as far as the bound allows or the band needs. */
+    const double turn = fabs(path->arc.angle_rad) / (double)count;
+    const double overlap = fmin(0.5 * SWARF_SWEEP_BOUND / fmax(turn, 1e-9), 0.5 * SWARF_HALF_WIDTH * turn);
     double xyz[3], a[3], b[3];
     to_index(path->start, origin, voxel, a);
     for (size_t i = 1; i <= count; i++) {
@@ -64,7 +70,15 @@ static swarf_status append_chords(swarf_track_list *list, const swarf_path *path
         to_index(xyz, origin, voxel, b);
         for (int k = 0; k < 2 && i < count; k++)
             b[axis[k]] = centre[axis[k]] + outwards * (b[axis[k]] - centre[axis[k]]);
-        SWARF_TRY(append_line(list, a, b));
+        const double length =
+            sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
+        const double part = length > 0 ? overlap / length : 0;
+        double low[3], high[3];
+        for (int k = 0; k < 3; k++) {
+            low[k] = a[k] - (i > 1 ? part : 0) * (b[k] - a[k]);
+            high[k] = b[k] + (i < count ? part : 0) * (b[k] - a[k]);
+        }
+        SWARF_TRY(append_line(list, low, high));
         for (int k = 0; k < 3; k++) a[k] = b[k];
     }
     return SWARF_OK;
