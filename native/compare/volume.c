@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Volumes of stock and design and of what each has beyond the other, on the voxels of the stock. The design is not
  * sampled into a tree of its own: a walk over its field meets the leaves of the stock one by one. */
-#include "swarf/compare.h"
-
 #include "base/parallel.h"
 #include "base/status.h"
+#include "compare/compare.h"
 #include "solid/field.h"
 #include "stock/leaf.h"
 #include "stock/measure.h"
-#include "stock/stock.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -27,7 +25,8 @@ struct work {
     const swarf_tree *tree;
     const swarf_tree_layout *layout;
     swarf_field field;
-    struct sums *sums; /* per cube */
+    struct sums *sums;            /* per cube */
+    swarf_slot_difference *slots; /* may be NULL */
 };
 
 struct cube_work {
@@ -73,7 +72,16 @@ static double common_fill(const float *a, const float *b, int at, double fill_a,
     return cosine >= 0 ? apart + cosine * (most - apart) : apart - cosine * (least - apart);
 }
 
-static void add_leaf(struct cube_work *cube, const float *stock, int occupied, const float *design)
+static void add_slot(struct cube_work *cube, unsigned slot, double excess, double gouge, double design)
+{
+    cube->sums.excess += excess;
+    cube->sums.gouge += gouge;
+    cube->sums.design += design;
+    if (cube->work->slots)
+        cube->work->slots[cube->node * SWARF_NODE_SLOTS + slot] = (swarf_slot_difference){(float)excess, (float)gouge};
+}
+
+static void add_leaf(struct cube_work *cube, unsigned slot, const float *stock, int occupied, const float *design)
 {
     const float scale = (float)(1 / cube->work->layout->voxel);
     double excess = 0, gouge = 0, total = 0;
@@ -84,9 +92,7 @@ static void add_leaf(struct cube_work *cube, const float *stock, int occupied, c
         gouge += other - both;
         total += other;
     }
-    cube->sums.excess += excess;
-    cube->sums.gouge += gouge;
-    cube->sums.design += total;
+    add_slot(cube, slot, excess, gouge, total);
 }
 
 static double leaf_fill(const float *values, float scale)
@@ -111,16 +117,14 @@ static swarf_status add_cube(void *context, const int32_t corner[3], int edge, c
             (int)(work->layout->occupied[cube->node * SWARF_NODE_WORDS + (slot >> 6)] >> (slot & 63) & 1);
         const float *stock = occupied ? swarf_tree_leaf(work->tree, cube->node, slot) : NULL;
         if (values) {
-            add_leaf(cube, stock, occupied, values);
+            add_leaf(cube, slot, stock, occupied, values);
             continue;
         }
         const double own = stock ? leaf_fill(stock, scale) : occupied * SWARF_LEAF_SIZE;
-        if (inside) {
-            cube->sums.gouge += SWARF_LEAF_SIZE - own;
-            cube->sums.design += SWARF_LEAF_SIZE;
-        } else {
-            cube->sums.excess += own;
-        }
+        if (inside)
+            add_slot(cube, slot, 0, SWARF_LEAF_SIZE - own, SWARF_LEAF_SIZE);
+        else
+            add_slot(cube, slot, own, 0, 0);
     }
     return SWARF_OK;
 }
@@ -148,10 +152,10 @@ static int is_within(const swarf_tree_layout *layout, const swarf_box *box)
     return 1;
 }
 
-static swarf_status compare(const swarf_stock *stock, const swarf_solid *design, const swarf_progress *progress,
-                            swarf_comparison *out)
+swarf_status swarf_compare_slots(const swarf_stock *stock, const swarf_solid *design, const swarf_progress *progress,
+                                 double from, double to, swarf_slot_difference *slots, swarf_comparison *out)
 {
-    struct work work = {.tree = stock->tree, .layout = swarf_tree_get_layout(stock->tree)};
+    struct work work = {.slots = slots, .tree = stock->tree, .layout = swarf_tree_get_layout(stock->tree)};
     const double voxel = work.layout->voxel, cubic = voxel * voxel * voxel;
     work.field = (swarf_field){.solid = design, .voxel = voxel, .reach = reach_voxels * voxel};
     for (int k = 0; k < 3; k++) work.field.origin[k] = work.layout->origin[k];
@@ -161,7 +165,7 @@ static swarf_status compare(const swarf_stock *stock, const swarf_solid *design,
     const size_t cubes = swarf_layout_nodes(work.layout) * CUBES_PER_NODE;
     work.sums = malloc(cubes * sizeof *work.sums);
     if (!work.sums) return swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory");
-    const swarf_status status = swarf_parallel_for(cubes, compare_cube, &work, progress, 0, 1);
+    const swarf_status status = swarf_parallel_for(cubes, compare_cube, &work, progress, from, to);
     double seen = 0;
     for (size_t i = 0; i < cubes && status == SWARF_OK; i++) {
         result.excess_mm3 += work.sums[i].excess * cubic;
@@ -180,7 +184,7 @@ swarf_status swarf_compare_volume(swarf_stock *stock, const swarf_solid *design,
 {
     SWARF_REQUIRE(stock && design && out, "compare: stock, design or output missing");
     SWARF_TRY(swarf_stock_enter_read(stock));
-    const swarf_status status = compare(stock, design, progress, out);
+    const swarf_status status = swarf_compare_slots(stock, design, progress, 0, 1, NULL, out);
     swarf_stock_leave(stock);
     return status;
 }

@@ -161,6 +161,7 @@ static swarf_status create(swarf_solid *solid, const swarf_triangles *triangles,
                                        .open_edges = shells.open_edges,
                                        .turned_edges = shells.turned_edges,
                                        .hole_mm2 = shells.hole_mm2};
+    solid->source_count = triangles->triangle_count;
     solid->open = shells.open_edges || shells.turned_edges;
     const double part = (to - from) / 4;
     swarf_status status = take_shells(solid, &shells, progress, from + part, from + 2 * part);
@@ -228,16 +229,17 @@ static double feature_cosine(const swarf_solid *solid, const double point[3], co
     const double way[3] = {point[0] - nearest->point[0], point[1] - nearest->point[1], point[2] - nearest->point[2]};
     const double away = sqrt(dot(way, way));
     double normal[3];
-    if (!(away > 0) || solid->open || solid->state[place] != SOLID_PLAIN) return 0;
+    if (solid->open || solid->state[place] != SOLID_PLAIN) return 0;
     if (nearest->feature >= 1 && nearest->feature <= 3) {
         const float *own = solid->normal[solid->vertex[place][nearest->feature - 1]];
         for (int k = 0; k < 3; k++) normal[k] = own[k];
         return dot(normal, way) / away;
     }
     if (!unit_normal(&solid->corners[place], normal)) return 0;
-    if (nearest->feature == 0) {
-        const double cosine = dot(normal, way) / away;
-        return fabs(cosine) > 0.5 ? cosine : 0; /* it stands upright, unless rounding had its way */
+    if (nearest->feature == 0) { /* the way stands on the plane: only its side is in question */
+        double side = 0;
+        for (int k = 0; k < 3; k++) side += normal[k] * (point[k] - solid->corners[place].xyz[0][k]);
+        return side < 0 ? -1 : 1;
     }
     const uint32_t other = solid->across[place][nearest->feature - 4];
     double beyond[3];
@@ -249,6 +251,7 @@ static double feature_cosine(const swarf_solid *solid, const double point[3], co
 
 double swarf_solid_sign(const swarf_solid *solid, const double point[3], const swarf_nearest *nearest)
 {
+    if (nearest->square == 0) return 1; /* on it */
     const double cosine = feature_cosine(solid, point, nearest);
     if (fabs(cosine) >= least_cosine) return cosine > 0 ? 1 : -1;
     return swarf_solid_inside(solid, point) ? -1 : 1;

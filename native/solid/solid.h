@@ -20,6 +20,7 @@ enum {
 struct swarf_solid {
     int references; /* only by atomic operations */
     swarf_solid_facts facts;
+    size_t source_count; /* of the triangles given */
     swarf_box_tree tree;
     /* by place in the tree */
     swarf_corners *corners;

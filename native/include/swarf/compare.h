@@ -24,6 +24,86 @@ typedef struct swarf_comparison {
 SWARF_API swarf_status swarf_compare_volume(swarf_stock *stock, const swarf_solid *design,
                                             const swarf_progress *progress, swarf_comparison *out);
 
+/** How the surface of a stock is to be held against a design. */
+typedef struct swarf_deviation_options {
+    size_t size;
+    double excess_mm;      /**< material may stand out by this much; > 0 */
+    double gouge_mm;       /**< material may be missing by this much; > 0 */
+    double allowance_mm;   /**< material that is meant to be left on the design */
+    swarf_box region;      /**< only in here; as it comes: everywhere */
+    const uint8_t *ignore; /**< one for each triangle the design was given: 1 where it is not to be measured; or NULL */
+    size_t ignore_count;
+    const swarf_stock *first; /**< the stock as it was before the first cut, to tell where no move went; or NULL */
+} swarf_deviation_options;
+
+/** 0.05 mm both ways, no allowance, everywhere, the whole design, no first stock. */
+SWARF_API swarf_deviation_options swarf_deviation_options_default(void);
+
+/** Places where the deviation is beyond tolerance, within some three voxels of each other. */
+typedef struct swarf_cluster {
+    int32_t excess;  /**< 1: material left; 0: a gouge, material missing */
+    int32_t reached; /**< 0: all of it lies on the first stock, where no move went (needs options.first) */
+    double value_mm; /**< the greatest deviation, positive outwards */
+    int32_t
+        at_least; /**< 1: it is a feature that no surface of the stock shows; value_mm is only known to be as much */
+    int32_t reserved;
+    double place[3];     /**< where that is, on the surface of the stock (or, see at_least, of the design) */
+    double area_mm2;     /**< of the stock's surface beyond tolerance (see at_least: of the design's) */
+    double volume_mm3;   /**< between stock and design in and around these places */
+    swarf_box box;       /**< of the places */
+    uint32_t triangle;   /**< of the design, nearest to the place */
+    uint32_t move_count; /**< of `moves` */
+    int64_t moves[4];    /**< see swarf_deviation_find_moves() */
+    double away_mm;      /**< how far the nearest cut stays from the place (excess) */
+} swarf_cluster;
+
+typedef struct swarf_deviation_sums {
+    swarf_comparison volumes;
+    size_t points;     /**< measured on the stock's surface: where it crosses the grid of voxel centres */
+    double area_mm2;   /**< of the surface they stand for */
+    double design_mm2; /**< of the design's surface held against the stock */
+    double mean_mm, rms_mm, least_mm, most_mm; /**< where the surface is smooth and some move went */
+    double percentile_mm[7];                   /**< of these: 1, 5, 25, 50, 75, 95, 99 % of the area lie below */
+    double excess_mm2, gouge_mm2;              /**< beyond tolerance */
+    double not_reached_mm2;                    /**< excess on the first stock, where no move went */
+    double error_mm; /**< how far a value may be off: 0.02 voxel on smooth faces (half a voxel within one of an edge,
+                        where only more than that beyond tolerance counts) */
+    int32_t passed;  /**< no cluster is a gouge or an excess that a move reached */
+    int32_t reserved;
+} swarf_deviation_sums;
+
+/** What the points of a deviation can be. */
+enum { SWARF_POINT_EDGE = 1, SWARF_POINT_UNTOUCHED = 2, SWARF_POINT_IGNORED = 4 };
+
+/** The deviation of a stock from its design. Immutable but for swarf_deviation_find_moves(). */
+typedef struct swarf_deviation swarf_deviation;
+
+/** Measure the stock's surface against the design, and the design's against the stock for features that are missing
+ *  altogether. The stocks are unchanged. SWARF_ERROR_ARGUMENT: a tolerance that is not positive, an allowance that is
+ *  not finite, an ignore_count that is not the number of triangles the design was given. */
+SWARF_API swarf_status swarf_deviation_create(swarf_stock *stock, const swarf_solid *design,
+                                              const swarf_deviation_options *options, const swarf_progress *progress,
+                                              swarf_deviation **out);
+SWARF_API void swarf_deviation_destroy(swarf_deviation *deviation);
+SWARF_API swarf_deviation_sums swarf_deviation_get_sums(const swarf_deviation *deviation);
+/** The clusters, those that fail first, the largest volume first. */
+SWARF_API const swarf_cluster *swarf_deviation_clusters(const swarf_deviation *deviation, size_t *count);
+/** The points on the stock's surface: 3 floats each (mm), deviations (mm, positive: material left), SWARF_POINT_ bits.
+ */
+SWARF_API size_t swarf_deviation_points(const swarf_deviation *deviation, const float **xyz, const float **value,
+                                        const uint8_t **kind);
+/** mm2 of the surface in `bins` equal steps of the deviation from lo to hi; what is beyond counts in the outer ones. */
+SWARF_API swarf_status swarf_deviation_histogram(const swarf_deviation *deviation, double lo, double hi, size_t bins,
+                                                 double *out);
+/** Find the moves behind each cluster's worst place: of a gouge those whose flutes pass through it, of an excess the
+ *  ones that come nearest (within half a cutter and three voxels). Up to four, the last cuts first. */
+SWARF_API swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, const swarf_program *program,
+                                                  const swarf_tool *tools, size_t tool_count);
+
+/** Text on a design that can hardly belong to a stock: beside it, larger than it, or in another unit; "" when all looks
+ *  well. `size` bytes at most. */
+SWARF_API swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, char *text, size_t size);
+
 #ifdef __cplusplus
 }
 #endif

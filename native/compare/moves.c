@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Which moves are behind a place, and whether a design can belong to a stock at all. */
+#include "base/status.h"
+#include "compare/compare.h"
+#include "swarf/sweep.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Clusters beyond these many are not worth a search of their own. */
+enum { MOST_CLUSTERS = 256, MOST_MOVES = sizeof((swarf_cluster *)0)->moves / sizeof(int64_t) };
+
+/* Cuts that differ by less than this many voxels at a place have both made it. */
+static const double as_near = 0.1;
+
+static const swarf_cutter *find_cutter(const swarf_tool *tools, size_t count, int32_t number)
+{
+    for (size_t i = 0; i < count; i++)
+        if (tools[i].number == number) return tools[i].cutter;
+    return NULL;
+}
+
+/* Whether a path with a cutter of this size can come near a point. */
+static int may_reach(const swarf_path *path, const double point[3], double radius, double height, double reach)
+{
+    for (int k = 0; k < 3; k++) {
+        double lo = fmin(path->start[k], path->end[k]), hi = fmax(path->start[k], path->end[k]);
+        if (path->is_arc) {
+            const double *c = path->arc.centre;
+            const double round = fmax(hypot(hypot(path->start[0] - c[0], path->start[1] - c[1]), path->start[2] - c[2]),
+                                      hypot(hypot(path->end[0] - c[0], path->end[1] - c[1]), path->end[2] - c[2]));
+            lo = fmin(lo, c[k] - round);
+            hi = fmax(hi, c[k] + round);
+        }
+        if (point[k] < lo - reach - (k == 2 ? 0 : radius) || point[k] > hi + reach + (k == 2 ? height : radius))
+            return 0;
+    }
+    return 1;
+}
+
+/* Put a move among the nearest, the last cut first among equals; *best is the least distance so far. */
+static void take_move(swarf_cluster *cluster, int64_t move, double distance, double near, double *best)
+{
+    if (distance > *best + near) return;
+    if (distance < *best - near) cluster->move_count = 0;
+    if (distance < *best) *best = distance;
+    if (cluster->move_count < MOST_MOVES) cluster->moves[cluster->move_count++] = move;
+}
+
+static swarf_status find_for_cluster(swarf_cluster *cluster, double voxel, const swarf_program *program,
+                                     const swarf_tool *tools, size_t tool_count)
+{
+    const swarf_move *moves = swarf_program_moves(program);
+    const swarf_section *sections = swarf_program_sections(program);
+    double best = INFINITY;
+    cluster->move_count = 0;
+    for (size_t i = swarf_program_move_count(program); i-- > 0;) {
+        const swarf_cutter *cutter = find_cutter(tools, tool_count, sections[swarf_move_get_section(&moves[i])].tool);
+        swarf_path path;
+        if (!cutter) continue;
+        SWARF_TRY(swarf_program_path(program, i, &path));
+        const double radius = swarf_cutter_radius(cutter, SWARF_PART_FLUTES);
+        if (!path.has_motion || !(radius > 0)) continue;
+        double low, high;
+        swarf_cutter_extent(cutter, SWARF_PART_FLUTES, &low, &high);
+        const double wide = voxel + radius / 6; /* distances are right to three of these */
+        if (!may_reach(&path, cluster->place, radius, high, 3 * wide)) continue;
+        float distance;
+        SWARF_TRY(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, wide, cluster->place, 1, &distance));
+        if (distance < 2.99 * wide) take_move(cluster, (int64_t)i, fmax(distance, 0), as_near * voxel, &best);
+    }
+    cluster->away_mm = cluster->move_count ? best : 0;
+    return SWARF_OK;
+}
+
+swarf_status swarf_find_moves(swarf_cluster *clusters, size_t count, double voxel, const swarf_program *program,
+                              const swarf_tool *tools, size_t tool_count)
+{
+    for (size_t i = 0; i < count && i < MOST_CLUSTERS; i++)
+        SWARF_TRY(find_for_cluster(&clusters[i], voxel, program, tools, tool_count));
+    return SWARF_OK;
+}
+
+/* A design this many times larger or smaller than its stock is in another unit. */
+static const struct {
+    double factor;
+    const char *text;
+} units[] = {{25.4, "mm instead of inches"}, {1 / 25.4, "inches instead of mm"}, {10, "mm instead of cm"},
+             {0.1, "cm instead of mm"},      {1000, "mm instead of m"},          {0.001, "m instead of mm"}};
+
+swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, char *text, size_t size)
+{
+    SWARF_REQUIRE(stock && design && text && size > 0, "compare: stock, design or text missing");
+    swarf_box own;
+    SWARF_TRY(swarf_stock_box(stock, &own));
+    const swarf_box other = swarf_solid_get_facts(design).box;
+    double edge = 0, design_edge = 0, out = 0;
+    int overlap = 1;
+    for (int k = 0; k < 3; k++) {
+        edge = fmax(edge, own.hi[k] - own.lo[k]);
+        design_edge = fmax(design_edge, other.hi[k] - other.lo[k]);
+        out = fmax(out, fmax(own.lo[k] - other.lo[k], other.hi[k] - own.hi[k]));
+        overlap &= own.lo[k] < other.hi[k] && other.lo[k] < own.hi[k];
+    }
+    text[0] = 0;
+    const double ratio = edge > 0 ? design_edge / edge : 1;
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++)
+        if (ratio > 0.55 * units[i].factor && ratio < 1.2 * units[i].factor && fabs(log(units[i].factor)) > 2) {
+            snprintf(text, size, "the design is %.4g times as large as the stock: is it in %s?", ratio, units[i].text);
+            return SWARF_OK;
+        }
+    if (!(edge > 0))
+        snprintf(text, size, "nothing is left of the stock");
+    else if (!overlap)
+        snprintf(text, size,
+                 "the design (%.6g, %.6g, %.6g .. %.6g, %.6g, %.6g mm) lies beside the stock (%.6g, %.6g, "
+                 "%.6g .. %.6g, %.6g, %.6g mm): is it in another place?",
+                 other.lo[0], other.lo[1], other.lo[2], other.hi[0], other.hi[1], other.hi[2], own.lo[0], own.lo[1],
+                 own.lo[2], own.hi[0], own.hi[1], own.hi[2]);
+    else if (out > 0.1 * edge)
+        snprintf(text, size,
+                 "the design reaches %.4g mm out of what is left of the stock: is it in the same place and "
+                 "unit?",
+                 out);
+    return SWARF_OK;
+}

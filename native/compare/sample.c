@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Points on surfaces. A stock is sampled where its surface crosses the lines between voxel centres: each such crossing
+ * along axis k stands for h^2 |n_k| of the surface, which adds up to its area because n is a unit vector. */
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/status.h"
+#include "compare/compare.h"
+#include "solid/solid.h"
+#include "stock/leaf.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A leaf with a border of one voxel. */
+enum { EDGE = SWARF_LEAF_DIM + 2 };
+static const int stride[3] = {EDGE * EDGE, EDGE, 1};
+
+/* Where the surface is smooth the gradients on both sides of it agree to this cosine and have the length of a voxel to
+ * this share of it; closer than a voxel to an edge one of them does not. */
+static const double smooth_cosine = 0.98, smooth_length = 0.06;
+
+/* Pieces of work of this many leaves or triangles. */
+enum { LEAVES = 64, TRIANGLES = 1024 };
+
+struct work {
+    const swarf_stock *stock;
+    const swarf_tree_layout *layout;
+    const swarf_leaf *leaves;
+    size_t leaf_count;
+    swarf_samples *parts; /* one per piece of work */
+    const swarf_solid *design;
+    double spacing, excess, gouge;
+    double *area; /* per piece */
+};
+
+static void load_border(const struct work *work, const swarf_leaf *leaf, float out[EDGE * EDGE * EDGE])
+{
+    for (int part = 0; part < 27; part++) {
+        const int side[3] = {part / 9 - 1, part / 3 % 3 - 1, part % 3 - 1};
+        int32_t at[3];
+        int lo[3], hi[3];
+        for (int k = 0; k < 3; k++) {
+            at[k] = leaf->ijk[k] + side[k] * SWARF_LEAF_DIM;
+            lo[k] = side[k] < 0 ? -1 : side[k] > 0 ? SWARF_LEAF_DIM : 0;
+            hi[k] = side[k] == 0 ? SWARF_LEAF_DIM : lo[k] + 1;
+        }
+        const swarf_tree_layout *layout = work->layout;
+        float tile = layout->background;
+        const float *values = NULL;
+        int within = 1;
+        for (int k = 0; k < 3; k++) within &= at[k] >= 0 && at[k] < layout->count[k] * SWARF_NODE_DIM;
+        if (within) {
+            const size_t node =
+                ((size_t)(at[0] >> 7) * (size_t)layout->count[1] + (size_t)(at[1] >> 7)) * (size_t)layout->count[2] +
+                (size_t)(at[2] >> 7);
+            const unsigned slot = (unsigned)((at[0] >> 3 & 15) << 8 | (at[1] >> 3 & 15) << 4 | (at[2] >> 3 & 15));
+            values = swarf_tree_leaf(work->stock->tree, node, slot);
+            if (layout->occupied[node * SWARF_NODE_WORDS + (slot >> 6)] >> (slot & 63) & 1) tile = -tile;
+        }
+        for (int x = lo[0]; x < hi[0]; x++)
+            for (int y = lo[1]; y < hi[1]; y++)
+                for (int z = lo[2]; z < hi[2]; z++)
+                    out[(x + 1) * stride[0] + (y + 1) * stride[1] + z + 1] =
+                        values ? values[(x & 7) * 64 + (y & 7) * 8 + (z & 7)] : tile;
+    }
+}
+
+static void gradient_at(const float *value, double out[3])
+{
+    for (int k = 0; k < 3; k++) out[k] = 0.5 * ((double)value[stride[k]] - value[-stride[k]]);
+}
+
+/* Gradient of the field at a place of the border is made from one side: the border has no neighbours. */
+static void gradient_near(const float *value, const int at[3], double out[3])
+{
+    for (int k = 0; k < 3; k++) {
+        const int below = at[k] > 0, above = at[k] < EDGE - 1;
+        out[k] = ((double)value[above * stride[k]] - value[-below * stride[k]]) / (below + above);
+    }
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static swarf_status add_sample(swarf_samples *samples, size_t *room, const swarf_sample *sample)
+{
+    SWARF_TRY(swarf_array_reserve((void **)&samples->samples, room, samples->count + 1, sizeof *sample));
+    samples->samples[samples->count++] = *sample;
+    return SWARF_OK;
+}
+
+/* The crossing between a voxel at `at` (in the border's places) and the next along `axis`. */
+static swarf_sample make_crossing(const struct work *work, const swarf_leaf *leaf, const float *border, const int at[3],
+                                  int axis)
+{
+    const double voxel = work->layout->voxel;
+    const float *a = border + at[0] * stride[0] + at[1] * stride[1] + at[2], *b = a + stride[axis];
+    const double t = (double)*a / ((double)*a - *b);
+    const int next[3] = {at[0] + (axis == 0), at[1] + (axis == 1), at[2] + (axis == 2)};
+    double u[3], v[3], normal[3];
+    gradient_at(a, u);
+    gradient_near(b, next, v);
+    u[axis] = v[axis] = (double)*b - *a; /* beyond them the band may end */
+    const double uu = sqrt(dot(u, u)), vv = sqrt(dot(v, v));
+    swarf_sample sample = {.kind = SWARF_POINT_EDGE};
+    if (dot(u, v) >= smooth_cosine * uu * vv && fabs(uu - voxel) <= smooth_length * voxel &&
+        fabs(vv - voxel) <= smooth_length * voxel)
+        sample.kind = 0;
+    for (int k = 0; k < 3; k++) {
+        normal[k] = (1 - t) * u[k] + t * v[k];
+        sample.xyz[k] = (float)(work->layout->origin[k] + voxel * (leaf->ijk[k] + at[k] - 1 + (k == axis ? t : 0)));
+    }
+    const double length = sqrt(dot(normal, normal));
+    sample.area = (float)(length > 0 ? voxel * voxel * fabs(normal[axis]) / length : 0);
+    return sample;
+}
+
+static swarf_status sample_leaves(void *context, size_t index)
+{
+    const struct work *work = context;
+    const size_t end = (index + 1) * LEAVES < work->leaf_count ? (index + 1) * LEAVES : work->leaf_count;
+    float border[EDGE * EDGE * EDGE];
+    size_t room = 0;
+    for (size_t i = index * LEAVES; i < end; i++) {
+        load_border(work, &work->leaves[i], border);
+        for (int voxel = 0; voxel < SWARF_LEAF_SIZE; voxel++) {
+            const int at[3] = {(voxel >> 6) + 1, (voxel >> 3 & 7) + 1, (voxel & 7) + 1};
+            const float *value = border + at[0] * stride[0] + at[1] * stride[1] + at[2];
+            for (int axis = 0; axis < 3; axis++) {
+                if ((*value < 0) == (value[stride[axis]] < 0)) continue;
+                const swarf_sample sample = make_crossing(work, &work->leaves[i], border, at, axis);
+                SWARF_TRY(add_sample(&work->parts[index], &room, &sample));
+            }
+        }
+    }
+    return SWARF_OK;
+}
+
+/* Put the parts end to end, in their order, and free them. */
+static swarf_status join_parts(swarf_samples *parts, size_t count, swarf_status status, swarf_samples *out)
+{
+    swarf_samples all = {0};
+    size_t total = 0;
+    for (size_t i = 0; i < count; i++) total += parts[i].count;
+    if (status == SWARF_OK && !(all.samples = malloc((total + 1) * sizeof *all.samples)))
+        status = swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory for %zu points", total);
+    for (size_t i = 0; i < count; i++) {
+        if (status == SWARF_OK && parts[i].count)
+            memcpy(all.samples + all.count, parts[i].samples, parts[i].count * sizeof *all.samples);
+        all.count += parts[i].count;
+        free(parts[i].samples);
+    }
+    free(parts);
+    if (status == SWARF_OK) *out = all;
+    return status;
+}
+
+swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *progress, double from, double to,
+                                swarf_samples *out)
+{
+    struct work work = {.stock = stock, .layout = swarf_tree_get_layout(stock->tree)};
+    swarf_leaf *leaves = NULL;
+    SWARF_TRY(swarf_stock_leaves(stock, &leaves, &work.leaf_count));
+    work.leaves = leaves;
+    const size_t pieces = (work.leaf_count + LEAVES - 1) / LEAVES;
+    work.parts = calloc(pieces + 1, sizeof *work.parts);
+    if (!work.parts) {
+        free(leaves);
+        return swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory");
+    }
+    const swarf_status status = swarf_parallel_for(pieces, sample_leaves, &work, progress, from, to);
+    free(leaves);
+    return join_parts(work.parts, pieces, status, out);
+}
+
+/* Trilinear, beyond the layout the background. */
+static double stock_value(const struct work *work, const double point[3])
+{
+    int32_t low[3];
+    double part[3], sum = 0;
+    for (int k = 0; k < 3; k++) {
+        const double at = (point[k] - work->layout->origin[k]) / work->layout->voxel;
+        if (!(at >= -1 && at < (double)work->layout->count[k] * SWARF_NODE_DIM)) return work->layout->background;
+        low[k] = (int32_t)floor(at);
+        part[k] = at - low[k];
+    }
+    for (int i = 0; i < 8; i++) {
+        const int32_t ijk[3] = {low[0] + (i >> 2), low[1] + (i >> 1 & 1), low[2] + (i & 1)};
+        sum += (i >> 2 ? part[0] : 1 - part[0]) * (i >> 1 & 1 ? part[1] : 1 - part[1]) *
+               (i & 1 ? part[2] : 1 - part[2]) * (double)swarf_stock_value(work->stock, ijk);
+    }
+    return sum;
+}
+
+static swarf_status try_point(const struct work *work, swarf_samples *found, size_t *room, size_t place,
+                              const double point[3], double area)
+{
+    const double value = stock_value(work, point);
+    if (-value <= work->excess && value <= work->gouge) return SWARF_OK;
+    swarf_sample sample = {.value = (float)-value,
+                           .area = (float)area,
+                           .triangle = work->design->source[place],
+                           .beyond = 1,
+                           .missing = 1};
+    for (int k = 0; k < 3; k++) sample.xyz[k] = (float)point[k];
+    return add_sample(found, room, &sample);
+}
+
+/* Points in rows along the longest edge, in the middle of pieces of equal area. */
+static swarf_status sample_triangle(const struct work *work, swarf_samples *found, size_t *room, size_t place,
+                                    double *area)
+{
+    const swarf_corners *t = &work->design->corners[place];
+    double edge[3], normal[3];
+    int base = 0;
+    for (int i = 0; i < 3; i++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++) {
+            const double along = (double)t->xyz[(i + 1) % 3][k] - t->xyz[i][k];
+            square += along * along;
+        }
+        edge[i] = sqrt(square);
+        if (edge[i] > edge[base]) base = i;
+    }
+    swarf_corners_normal(t, normal);
+    const double own = 0.5 * sqrt(dot(normal, normal));
+    if (!(own > 0)) return SWARF_OK;
+    *area += own;
+    const size_t rows = (size_t)ceil(2 * own / edge[base] / work->spacing);
+    const float *a = t->xyz[base], *b = t->xyz[(base + 1) % 3], *top = t->xyz[(base + 2) % 3];
+    for (size_t row = 0; row < rows; row++) {
+        const double up = ((double)row + 0.5) / (double)rows;
+        const size_t columns = (size_t)ceil(edge[base] * (1 - up) / work->spacing);
+        for (size_t column = 0; column < columns; column++) {
+            const double along = ((double)column + 0.5) / (double)columns;
+            double point[3];
+            for (int k = 0; k < 3; k++) point[k] = up * top[k] + (1 - up) * (a[k] + along * ((double)b[k] - a[k]));
+            SWARF_TRY(try_point(work, found, room, place, point, own * 2 * (1 - up) / (double)rows / (double)columns));
+        }
+    }
+    return SWARF_OK;
+}
+
+static swarf_status sample_triangles(void *context, size_t index)
+{
+    const struct work *work = context;
+    const size_t count = work->design->tree.count;
+    const size_t end = (index + 1) * TRIANGLES < count ? (index + 1) * TRIANGLES : count;
+    size_t room = 0;
+    for (size_t place = index * TRIANGLES; place < end; place++)
+        if (work->design->state[place] == SOLID_PLAIN)
+            SWARF_TRY(sample_triangle(work, &work->parts[index], &room, place, &work->area[index]));
+    return SWARF_OK;
+}
+
+swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double excess,
+                                 double gouge, const swarf_progress *progress, double from, double to,
+                                 swarf_samples *out, double *area)
+{
+    const size_t pieces = (design->tree.count + TRIANGLES - 1) / TRIANGLES;
+    struct work work = {.stock = stock,
+                        .layout = swarf_tree_get_layout(stock->tree),
+                        .design = design,
+                        .spacing = spacing,
+                        .excess = excess,
+                        .gouge = gouge};
+    work.parts = calloc(pieces + 1, sizeof *work.parts);
+    work.area = calloc(pieces + 1, sizeof *work.area);
+    swarf_status status = SWARF_OK;
+    if (!work.parts || !work.area) status = swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory");
+    if (status == SWARF_OK) status = swarf_parallel_for(pieces, sample_triangles, &work, progress, from, to);
+    double total = 0;
+    for (size_t i = 0; i < pieces && status == SWARF_OK; i++) total += work.area[i];
+    free(work.area);
+    status = join_parts(work.parts, work.parts ? pieces : 0, status, out);
+    if (status == SWARF_OK) *area = total;
+    return status;
+}

@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Deviations of known size, place and line; none where nothing is wrong. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "shapes.h"
+#include "test.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* A block with a pocket, cut with a flat end mill: 60 x 40 x 10, the pocket 20 x 10 deep 4 about the middle. */
+static const swarf_box block = {{0, 0, -10}, {60, 40, 0}};
+
+typedef struct job {
+    swarf_program *program;
+    swarf_cutter *cutter;
+    swarf_stock *first, *stock;
+    swarf_tool tool;
+} job;
+
+static void line(job *j, swarf_move_kind kind, double x, double y, double z, uint32_t number)
+{
+    const double end[3] = {x, y, z};
+    CHECK_OK(swarf_program_add_line(j->program, kind, end, 300, number));
+}
+
+static job begin(const char *cutter, double voxel)
+{
+    job j = {0};
+    const double start[3] = {30, 20, 10};
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = voxel;
+    CHECK_OK(swarf_program_create(start, &j.program));
+    CHECK_OK(swarf_program_add_operation(j.program, "pocket"));
+    const swarf_section section = {.tool = 1, .spindle = SWARF_SPINDLE_CW, .spindle_rpm = 8000};
+    CHECK_OK(swarf_program_set_section(j.program, &section));
+    CHECK_OK(swarf_cutter_parse(cutter, &j.cutter));
+    CHECK_OK(swarf_stock_create_box(&block, &options, &j.first));
+    CHECK_OK(swarf_stock_copy(j.first, &j.stock));
+    j.tool = (swarf_tool){.number = 1, .cutter = j.cutter};
+    return j;
+}
+
+static void cut(job *j)
+{
+    swarf_simulation *simulation = NULL;
+    CHECK_OK(swarf_stock_simulate(j->stock, j->program, 0, swarf_program_move_count(j->program), &j->tool, 1, NULL,
+                                  NULL, &simulation));
+    swarf_simulation_destroy(simulation);
+}
+
+static void end(job *j)
+{
+    swarf_program_release(j->program);
+    swarf_cutter_release(j->cutter);
+    swarf_stock_destroy(j->first);
+    swarf_stock_destroy(j->stock);
+}
+
+/* The pocket by six passes of a cutter of 4 mm; its corners are left round. Lines 1 .. 8. */
+static void add_pocket(job *j, double depth)
+{
+    uint32_t number = 1;
+    line(j, SWARF_MOVE_RAPID, 22, 17, 5, number++);
+    line(j, SWARF_MOVE_FEED, 22, 17, -depth, number++);
+    line(j, SWARF_MOVE_FEED, 38, 17, -depth, number++);
+    line(j, SWARF_MOVE_FEED, 38, 23, -depth, number++);
+    line(j, SWARF_MOVE_FEED, 22, 23, -depth, number++);
+    line(j, SWARF_MOVE_FEED, 22, 17, -depth, number++);
+    line(j, SWARF_MOVE_FEED, 22, 20, -depth, number++);
+    line(j, SWARF_MOVE_FEED, 38, 20, -depth, number++);
+    line(j, SWARF_MOVE_FEED, 38, 20, 5, number++);
+}
+
+/* The block with that pocket: its corners round with radius 2, in `steps` facets each. */
+static swarf_solid *design_of(double depth, int steps)
+{
+    enum { MOST = 512 };
+    double ring[MOST][2];
+    size_t count = 0;
+    static const double corner[4][2] = {{38, 23}, {22, 23}, {22, 17}, {38, 17}};
+    for (int c = 0; c < 4; c++)
+        for (int i = 0; i <= steps; i++, count++) {
+            const double angle = 0.5 * pi * (c + (double)i / steps);
+            ring[count][0] = corner[c][0] + 2 * cos(angle);
+            ring[count][1] = corner[c][1] + 2 * sin(angle);
+        }
+    shape s = {0};
+    /* vertices 0 .. 7: the block; then the ring above and below; then the middle of the pocket's floor */
+    for (int i = 0; i < 8; i++)
+        shape_vertex(&s, i & 1 ? block.hi[0] : block.lo[0], i & 2 ? block.hi[1] : block.lo[1],
+                     i & 4 ? block.hi[2] : block.lo[2]);
+    for (size_t i = 0; i < count; i++) {
+        shape_vertex(&s, ring[i][0], ring[i][1], 0);
+        shape_vertex(&s, ring[i][0], ring[i][1], -depth);
+    }
+    shape_vertex(&s, 30, 20, -depth);
+    static const int faces[5][4] = {{0, 2, 3, 1}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (int i = 0; i < 5; i++) {
+        shape_triangle(&s, (size_t)faces[i][0], (size_t)faces[i][1], (size_t)faces[i][2]);
+        shape_triangle(&s, (size_t)faces[i][0], (size_t)faces[i][2], (size_t)faces[i][3]);
+    }
+    static const size_t top[4] = {7, 6, 4, 5}; /* by the corners of the ring, counter-clockwise */
+    for (size_t i = 0; i < count; i++) {
+        const size_t next = (i + 1) % count, a = 8 + 2 * i, b = 8 + 2 * next;
+        const size_t quarter = i / ((size_t)steps + 1), then = next / ((size_t)steps + 1);
+        shape_triangle(&s, a, b, b + 1);
+        shape_triangle(&s, a, b + 1, a + 1);
+        shape_triangle(&s, 8 + 2 * count, a + 1, b + 1);
+        shape_triangle(&s, top[quarter], b, a);
+        if (then != quarter) shape_triangle(&s, top[quarter], top[then], b);
+    }
+    swarf_triangles triangles = shape_view(&s);
+    swarf_topology topology;
+    swarf_solid *solid = NULL;
+    CHECK_OK(swarf_triangles_topology(&triangles, &topology));
+    CHECK(topology.closed);
+    CHECK_OK(swarf_solid_create(&triangles, NULL, &solid));
+    shape_free(&s);
+    return solid;
+}
+
+static swarf_deviation *measure(job *j, const swarf_solid *design, double tolerance)
+{
+    swarf_deviation_options options = swarf_deviation_options_default();
+    options.excess_mm = options.gouge_mm = tolerance;
+    options.first = j->first;
+    swarf_deviation *deviation = NULL;
+    CHECK_OK(swarf_deviation_create(j->stock, design, &options, NULL, &deviation));
+    if (deviation) CHECK_OK(swarf_deviation_find_moves(deviation, j->program, &j->tool, 1));
+    return deviation;
+}
+
+static void print_clusters(const swarf_deviation *deviation)
+{
+    size_t count;
+    const swarf_cluster *c = swarf_deviation_clusters(deviation, &count);
+    for (size_t i = 0; i < count && i < 10; i++)
+        printf("  %s %s%g mm at (%g, %g, %g), %g mm2, %g mm3, move %d\n", c[i].excess ? "excess" : "gouge",
+               c[i].at_least ? "at least " : "", c[i].value_mm, c[i].place[0], c[i].place[1], c[i].place[2],
+               c[i].area_mm2, c[i].volume_mm3, c[i].move_count ? (int)c[i].moves[0] : -1);
+}
+
+static void check_nothing_wrong(void)
+{
+    static const double voxels[5] = {0.125, 0.137, 0.2, 0.331, 0.5};
+    swarf_solid *design = design_of(4, 90);
+    for (int i = 0; i < 5 && design; i++) {
+        job j = begin("flat:d=4,l=20", voxels[i]);
+        add_pocket(&j, 4);
+        cut(&j);
+        swarf_deviation *deviation = measure(&j, design, 0.01);
+        size_t count = 1;
+        swarf_deviation_clusters(deviation, &count);
+        if (!CHECK(count == 0)) {
+            printf("voxel %g\n", voxels[i]);
+            print_clusters(deviation);
+        }
+        const swarf_deviation_sums sums = swarf_deviation_get_sums(deviation);
+        CHECK(sums.passed == 1);
+        CHECK_NEAR(sums.area_mm2, 2 * 2400 + 2000 + 4 * (2 * (16 + 6) + 4 * pi), 0.01 * 7000);
+        CHECK_NEAR(sums.most_mm, 0, 0.025 * voxels[i] + 0.001);
+        CHECK_NEAR(sums.least_mm, 0, 0.025 * voxels[i] + 0.001);
+        CHECK_NEAR(sums.volumes.excess_mm3, 0, voxels[i]);
+        CHECK_NEAR(sums.volumes.gouge_mm3, 0, voxels[i]);
+        swarf_deviation_destroy(deviation);
+        end(&j);
+    }
+    swarf_solid_release(design);
+}
+
+static void check_deep_pocket(void)
+{
+    static const double voxels[3] = {0.1, 0.173, 0.25};
+    swarf_solid *design = design_of(4, 90);
+    for (int i = 0; i < 3 && design; i++) {
+        job j = begin("flat:d=4,l=20", voxels[i]);
+        add_pocket(&j, 4.03);
+        cut(&j);
+        swarf_deviation *deviation = measure(&j, design, 0.02);
+        size_t count = 0;
+        const swarf_cluster *c = swarf_deviation_clusters(deviation, &count);
+        if (CHECK(count == 1)) {
+            CHECK(c->excess == 0);
+            CHECK_NEAR(c->value_mm, -0.03, 0.02 * voxels[i] + 1e-4);
+            CHECK_NEAR(c->place[2], -4.03, 0.02 * voxels[i]);
+            const double floor = 200 - (4 - pi) * 4;
+            CHECK_NEAR(c->area_mm2, floor, 2.5 * voxels[i] * 60);
+            CHECK_NEAR(c->volume_mm3, 0.03 * floor, 0.1 * 0.03 * floor);
+            CHECK(c->move_count > 0);
+        }
+        print_clusters(deviation);
+        CHECK(swarf_deviation_get_sums(deviation).passed == 0);
+        swarf_deviation_destroy(deviation);
+        end(&j);
+    }
+    swarf_solid_release(design);
+}
+
+static void check_gouge_by_a_line(void)
+{
+    swarf_solid *design = design_of(4, 90);
+    job j = begin("flat:d=4,l=20", 0.1);
+    add_pocket(&j, 4);
+    line(&j, SWARF_MOVE_RAPID, 10, 8, 5, 100);
+    line(&j, SWARF_MOVE_FEED, 10, 8, -0.2, 101);
+    line(&j, SWARF_MOVE_FEED, 15, 8, -0.2, 102);
+    line(&j, SWARF_MOVE_RAPID, 15, 8, 5, 103);
+    cut(&j);
+    swarf_deviation *deviation = measure(&j, design, 0.05);
+    size_t count = 0;
+    const swarf_cluster *c = swarf_deviation_clusters(deviation, &count);
+    if (CHECK(count == 1)) {
+        CHECK(c->excess == 0);
+        CHECK_NEAR(c->value_mm, -0.2, 0.002 + 1e-4);
+        CHECK(c->place[0] > 7.9 && c->place[0] < 17.1 && fabs(c->place[1] - 8) < 2.1);
+        CHECK_NEAR(c->volume_mm3, 0.2 * (20 + 4 * pi), 0.1);
+        const uint32_t by = c->move_count ? swarf_program_moves(j.program)[c->moves[0]].line : 0;
+        CHECK(by == 102 || by == 101 || by == 103);
+    }
+    print_clusters(deviation);
+    swarf_deviation_destroy(deviation);
+    end(&j);
+    swarf_solid_release(design);
+}
+
+static void check_missing_pocket(void)
+{
+    swarf_solid *design = design_of(4, 90);
+    job j = begin("flat:d=4,l=20", 0.2);
+    line(&j, SWARF_MOVE_RAPID, 30, 20, 5, 1);
+    cut(&j);
+    swarf_deviation *deviation = measure(&j, design, 0.05);
+    size_t count = 0;
+    const swarf_cluster *c = swarf_deviation_clusters(deviation, &count);
+    if (CHECK(count == 1)) {
+        CHECK(c->excess == 1 && c->reached == 0 && c->at_least == 0);
+        CHECK_NEAR(c->value_mm, 4, 0.01); /* from the floor to the top above it */
+        CHECK_NEAR(c->volume_mm3, 4 * (200 - (4 - pi) * 4), 2);
+    }
+    const swarf_deviation_sums sums = swarf_deviation_get_sums(deviation);
+    CHECK(sums.passed == 1); /* not reached is no failure */
+    CHECK(sums.not_reached_mm2 > 150);
+    print_clusters(deviation);
+    swarf_deviation_destroy(deviation);
+    end(&j);
+    swarf_solid_release(design);
+}
+
+/* Ball passes side by side leave scallops of r - sqrt(r^2 - (s / 2)^2). */
+static void check_scallops(void)
+{
+    const double radius = 3, step = 1.5, height = radius - sqrt(radius * radius - step * step / 4);
+    const double lo[3] = {0, 0, -10}, hi[3] = {60, 40, -1};
+    shape s = {0};
+    shape_box(&s, lo, hi);
+    const swarf_triangles triangles = shape_view(&s);
+    swarf_solid *design = NULL;
+    CHECK_OK(swarf_solid_create(&triangles, NULL, &design));
+    job j = begin("ball:d=6,l=20", 0.08);
+    for (int i = -1; i <= 28; i++) {
+        line(&j, SWARF_MOVE_RAPID, i % 2 ? -5 : 65, step * i, 5, 1);
+        line(&j, SWARF_MOVE_FEED, i % 2 ? -5 : 65, step * i, -1, 2);
+        line(&j, SWARF_MOVE_FEED, i % 2 ? 65 : -5, step * i, -1, 3);
+        line(&j, SWARF_MOVE_RAPID, i % 2 ? 65 : -5, step * i, 5, 4);
+    }
+    cut(&j);
+    swarf_deviation *deviation = measure(&j, design, 0.15);
+    const swarf_deviation_sums sums = swarf_deviation_get_sums(deviation);
+    CHECK(sums.passed == 1);
+    CHECK(sums.most_mm < height && sums.most_mm > 0.6 * height); /* the ridge itself is sharp */
+    swarf_deviation_destroy(deviation);
+    deviation = measure(&j, design, 0.02);
+    CHECK(swarf_deviation_get_sums(deviation).passed == 0);
+    size_t count = 0;
+    const swarf_cluster *c = swarf_deviation_clusters(deviation, &count);
+    CHECK(count > 0);
+    for (size_t i = 0; i < count; i++) CHECK(c[i].excess && c[i].value_mm < height + 0.01);
+    swarf_deviation_destroy(deviation);
+    end(&j);
+    swarf_solid_release(design);
+    shape_free(&s);
+}
+
+static void check_place(void)
+{
+    const double lo[3] = {100, 0, -10}, hi[3] = {160, 40, 0}, inch[3] = {60 / 25.4, 40 / 25.4, -1};
+    shape beside = {0}, small = {0};
+    shape_box(&beside, lo, hi);
+    shape_box(&small, (const double[3]){0, 0, -10 / 25.4}, (const double[3]){inch[0], inch[1], 0});
+    const swarf_triangles triangles[2] = {shape_view(&beside), shape_view(&small)};
+    job j = begin("flat:d=4,l=20", 0.5);
+    char text[256];
+    for (int i = 0; i < 2; i++) {
+        swarf_solid *design = NULL;
+        CHECK_OK(swarf_solid_create(&triangles[i], NULL, &design));
+        CHECK_OK(swarf_compare_place(j.stock, design, text, sizeof text));
+        CHECK(strstr(text, i ? "inches" : "beside") != NULL);
+        swarf_solid_release(design);
+    }
+    swarf_solid *right = design_of(4, 8);
+    CHECK_OK(swarf_compare_place(j.stock, right, text, sizeof text));
+    CHECK(text[0] == 0);
+    swarf_deviation_options options = swarf_deviation_options_default();
+    swarf_deviation *deviation = NULL;
+    options.gouge_mm = 0;
+    CHECK_FAILS(swarf_deviation_create(j.stock, right, &options, NULL, &deviation), SWARF_ERROR_ARGUMENT, "gouges");
+    options.gouge_mm = 0.1;
+    options.allowance_mm = NAN;
+    CHECK_FAILS(swarf_deviation_create(j.stock, right, &options, NULL, &deviation), SWARF_ERROR_ARGUMENT, "allowance");
+    CHECK_FAILS(swarf_deviation_create(j.stock, NULL, NULL, NULL, &deviation), SWARF_ERROR_ARGUMENT, "missing");
+    swarf_solid_release(right);
+    end(&j);
+    shape_free(&beside);
+    shape_free(&small);
+}
+
+int main(void)
+{
+    check_nothing_wrong();
+    check_deep_pocket();
+    check_gouge_by_a_line();
+    check_missing_pocket();
+    check_scallops();
+    check_place();
+    return test_end();
+}
