@@ -73,6 +73,9 @@ static PyMethodDef module_methods[] = {
     {"memory_peak", module_memory_peak, METH_NOARGS,
      "memory_peak()\n--\n\nPeak resident memory of this process in bytes, 0 where the system does not tell."},
     {"compare_volume", WITH_KEYWORDS(compare_volume), METH_VARARGS | METH_KEYWORDS, compare_volume_doc},
+    {"measure_deviation", WITH_KEYWORDS(measure_deviation), METH_VARARGS | METH_KEYWORDS, measure_deviation_doc},
+    {"compare_place", WITH_KEYWORDS(compare_place), METH_VARARGS | METH_KEYWORDS, compare_place_doc},
+    {"deviation_colours", WITH_KEYWORDS(deviation_colours), METH_VARARGS | METH_KEYWORDS, deviation_colours_doc},
     {NULL, NULL, 0, NULL},
 };
 
@@ -103,7 +106,10 @@ static int module_exec(PyObject *module)
                    add_type(module, &picture_spec, &state->picture, 0) ||
                    add_sequence(module, &pick_desc, &state->pick) ||
                    add_sequence(module, &finding_desc, &state->finding) ||
-                   add_sequence(module, &comparison_desc, &state->comparison)
+                   add_sequence(module, &comparison_desc, &state->comparison) ||
+                   add_sequence(module, &cluster_desc, &state->cluster) ||
+                   add_type(module, &solid_spec, &state->solid, 0) ||
+                   add_type(module, &deviation_spec, &state->deviation, 0)
                ? -1
                : 0;
 }
@@ -123,6 +129,9 @@ static int module_traverse(PyObject *module, visitproc visit, void *arg)
     Py_VISIT(state->view);
     Py_VISIT(state->finding);
     Py_VISIT(state->comparison);
+    Py_VISIT(state->cluster);
+    Py_VISIT(state->solid);
+    Py_VISIT(state->deviation);
     Py_VISIT(state->error);
     Py_VISIT(state->format_error);
     Py_VISIT(state->geometry_error);
@@ -146,6 +155,9 @@ static int module_clear(PyObject *module)
     Py_CLEAR(state->view);
     Py_CLEAR(state->finding);
     Py_CLEAR(state->comparison);
+    Py_CLEAR(state->cluster);
+    Py_CLEAR(state->solid);
+    Py_CLEAR(state->deviation);
     Py_CLEAR(state->error);
     Py_CLEAR(state->format_error);
     Py_CLEAR(state->geometry_error);

@@ -30,6 +30,9 @@ typedef struct module_state {
     PyTypeObject *view;
     PyTypeObject *finding; /* struct sequences */
     PyTypeObject *comparison;
+    PyTypeObject *cluster;
+    PyTypeObject *solid;
+    PyTypeObject *deviation;
     PyTypeObject *pick;
     PyObject *error; /* exceptions, see error.c */
     PyObject *format_error;
@@ -123,6 +126,9 @@ PyObject *box_to_python(const swarf_box *box);
 
 extern PyType_Spec simulation_spec;
 extern PyStructSequence_Desc finding_desc;
+/** The tool table of a dict {number: Cutter}; it holds its own references, for the dict may change meanwhile. */
+int tools_read(module_state *state, PyObject *dict, swarf_tool **out, size_t *count);
+void tools_free(swarf_tool *tools, size_t count);
 extern const char stock_simulate_doc[];
 PyObject *stock_simulate(PyObject *self, PyObject *args, PyObject *keywords);
 
@@ -160,5 +166,17 @@ extern PyType_Spec mesh_spec;
 extern PyStructSequence_Desc comparison_desc;
 extern const char compare_volume_doc[];
 PyObject *compare_volume(PyObject *module, PyObject *args, PyObject *keywords);
+
+/* ---- deviation.c ---- */
+
+extern PyType_Spec solid_spec;
+extern PyType_Spec deviation_spec;
+extern PyStructSequence_Desc cluster_desc;
+extern const char measure_deviation_doc[];
+PyObject *measure_deviation(PyObject *module, PyObject *args, PyObject *keywords);
+extern const char compare_place_doc[];
+PyObject *compare_place(PyObject *module, PyObject *args, PyObject *keywords);
+extern const char deviation_colours_doc[];
+PyObject *deviation_colours(PyObject *module, PyObject *args, PyObject *keywords);
 
 #endif

@@ -128,14 +128,13 @@ PyType_Spec simulation_spec = {
 
 /* ---- simulating ---- */
 
-static void tools_free(swarf_tool *tools, size_t count)
+void tools_free(swarf_tool *tools, size_t count)
 {
     for (size_t i = 0; i < count; i++) swarf_cutter_release((swarf_cutter *)tools[i].cutter);
     PyMem_Free(tools);
 }
 
-/** The tool table of a dict; it holds its own references, for the dict may change meanwhile. */
-static int tools_read(module_state *state, PyObject *dict, swarf_tool **out, size_t *count)
+int tools_read(module_state *state, PyObject *dict, swarf_tool **out, size_t *count)
 {
     swarf_tool *tools = PyMem_Calloc((size_t)PyDict_Size(dict) + 1, sizeof *tools);
     size_t found = 0;

@@ -16,8 +16,10 @@ from ._native import (
     BusyError,
     Camera,
     Cancelled,
+    Cluster,
     Comparison,
     Cutter,
+    Deviation,
     Error,
     Finding,
     FormatError,
@@ -28,9 +30,13 @@ from ._native import (
     Program,
     Scene,
     Simulation,
+    Solid,
     Stock,
+    compare_place,
     compare_volume,
+    deviation_colours,
     isa,
+    measure_deviation,
     memory_peak,
     set_threads,
     threads,
@@ -38,11 +44,13 @@ from ._native import (
 )
 from .job import Job
 from .simulate import Result, simulate
+from .verify import Verification, verify
 
 __version__ = version()
 
 __all__ = [
-    "BusyError", "Camera", "Cancelled", "Comparison", "Cutter", "Error", "Finding", "FormatError", "GeometryError", "Job",
-    "Mesh", "Pick", "Picture", "Program", "Result", "Scene", "Simulation", "Stock", "compare_volume", "isa", "memory_peak", "set_threads",
-    "simulate", "threads", "version",
+    "BusyError", "Camera", "Cancelled", "Cluster", "Comparison", "Cutter", "Deviation", "Error", "Finding",
+    "FormatError", "GeometryError", "Job", "Mesh", "Pick", "Picture", "Program", "Result", "Scene", "Simulation",
+    "Solid", "Stock", "Verification", "compare_place", "compare_volume", "deviation_colours", "isa",
+    "measure_deviation", "memory_peak", "set_threads", "simulate", "threads", "verify", "version",
 ]

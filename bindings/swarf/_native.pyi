@@ -456,3 +456,129 @@ class Comparison(NamedTuple):
 def compare_volume(stock: Stock, design: Mesh, *, progress: Progress = None) -> Comparison:
     """Compare a stock with a closed design Mesh by volume, on the stock's own voxels. The stock is unchanged.
     GeometryError when the design is open."""
+
+@final
+class Solid:
+    """What a closed Mesh encloses, with exact signed distances. Small holes pass (see open_edges). GeometryError when
+    it is open, inside out or encloses nothing. Immutable, any thread."""
+
+    def __new__(cls, mesh: Mesh, *, progress: Progress = None) -> Solid: ...
+    def distance(self, points: Table, /) -> memoryview:
+        """Signed distances (mm, negative inside, exact) of an (n, 3) table of points: read-only float64 view."""
+    @property
+    def volume(self) -> float:
+        """Volume, mm3; overlapping shells count twice."""
+    @property
+    def bounding_box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """((x, y, z), (x, y, z)) in mm."""
+    @property
+    def triangle_count(self) -> int:
+        """Triangles that bound it."""
+    @property
+    def dropped_triangles(self) -> int:
+        """Degenerate, duplicate and inner triangles."""
+    @property
+    def open_edges(self) -> int:
+        """Edges where the mesh is open."""
+    @property
+    def turned_edges(self) -> int:
+        """Edges between triangles turned different ways."""
+    @property
+    def crossing_triangles(self) -> int:
+        """Triangles that cross or touch others."""
+    @property
+    def hole_mm2(self) -> float:
+        """The holes have no greater area."""
+
+class Cluster(NamedTuple):
+    """Neighbouring places where the deviation is beyond tolerance."""
+
+    kind: Literal["excess", "gouge", "not reached"]
+    value: float
+    at_least: bool
+    place: tuple[float, float, float]
+    area: float
+    volume: float
+    box: tuple[tuple[float, float, float], tuple[float, float, float]]
+    triangle: int
+    moves: tuple[int, ...]
+    away: float
+
+@final
+class Deviation:
+    """The deviation of a stock from its design, see measure_deviation(). Immutable, any thread."""
+
+    def histogram(self, lo: float, hi: float, bins: int = 64) -> tuple[float, ...]:
+        """mm2 of the surface in equal steps of the deviation from lo to hi; what is beyond counts in the outer ones."""
+    @property
+    def passed(self) -> bool:
+        """Whether no cluster is a gouge, or an excess that a move reached."""
+    @property
+    def clusters(self) -> tuple[Cluster, ...]:
+        """Tuple of Cluster: those that fail first, the largest volume first."""
+    @property
+    def comparison(self) -> Comparison:
+        """Volumes of stock, design, excess and gouge: Comparison."""
+    @property
+    def points(self) -> memoryview:
+        """Read-only (n, 3) float32 view: measured points of the surface, mm."""
+    @property
+    def values(self) -> memoryview:
+        """Read-only float32 view: their deviations, mm, positive where material is left."""
+    @property
+    def kinds(self) -> memoryview:
+        """Read-only uint8 view: 1 near an edge, 2 untouched, 4 not to be measured."""
+    @property
+    def percentiles(self) -> tuple[float, float, float, float, float, float, float]:
+        """Deviations (mm) that 1, 5, 25, 50, 75, 95 and 99 % of the area lie below."""
+    @property
+    def area(self) -> float:
+        """Measured surface, mm2."""
+    @property
+    def mean(self) -> float:
+        """Mean deviation, mm."""
+    @property
+    def rms(self) -> float:
+        """Root of the mean square, mm."""
+    @property
+    def least(self) -> float:
+        """Least deviation, mm."""
+    @property
+    def most(self) -> float:
+        """Greatest deviation, mm."""
+    @property
+    def excess_area(self) -> float:
+        """Surface with too much left, mm2."""
+    @property
+    def gouge_area(self) -> float:
+        """Surface cut too deep, mm2."""
+    @property
+    def not_reached_area(self) -> float:
+        """Surface with too much left where no move went, mm2."""
+    @property
+    def error(self) -> float:
+        """How far a value on a smooth face may be off, mm."""
+
+def measure_deviation(
+    stock: Stock,
+    design: Solid,
+    *,
+    excess: float = 0.05,
+    gouge: float = 0.05,
+    allowance: float = 0.0,
+    region: Optional[Box] = None,
+    first: Optional[Stock] = None,
+    program: Optional[Program] = None,
+    tools: Optional[dict[int, Cutter]] = None,
+    progress: Progress = None,
+) -> Deviation:
+    """Hold a stock against a design Solid. Tolerances ``excess`` and ``gouge`` in mm; ``allowance`` is meant to be
+    left; ``region`` is a box to stay in; ``first`` is the Stock before the first cut, to tell where no move went;
+    ``program`` and ``tools`` tell the moves behind each cluster. The stocks are unchanged."""
+
+def compare_place(stock: Stock, design: Solid) -> str:
+    """What makes it doubtful that a design belongs to a stock: another place, another unit; "" when all looks well."""
+
+def deviation_colours(values: Table, rgba: Buffer, tolerance: float) -> bytes:
+    """Tint shaded pixels (RGBA bytes) by their deviations, an (n, 1) table of mm: green within the tolerance, by yellow
+    to red where material is left, by cyan to blue where it is missing."""

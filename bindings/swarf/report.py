@@ -9,6 +9,7 @@ from typing import Any, Optional
 
 from . import _native
 from .simulate import Result
+from .verify import Verification
 
 
 def _unique(names: tuple[str, ...]) -> list[str]:
@@ -83,6 +84,47 @@ def make(result: Result, input_path: str, seconds_read: float = 0.0) -> dict[str
     return report
 
 
+def make_verification(done: Verification, input_path: str, seconds_read: float = 0.0) -> dict[str, Any]:
+    """Report of a verification: that of its simulation, and what the comparison found; plain types only."""
+    made = make(done.result, input_path, seconds_read)
+    deviation = done.deviation
+    reach = 4 * max(done.tolerance)
+    made["verification"] = {
+        "passed": done.passed,
+        "tolerance_mm": {"excess": done.tolerance[0], "gouge": done.tolerance[1]},
+        "allowance_mm": done.allowance,
+        "complete": done.complete,
+        "error_mm": deviation.error,
+        "design_triangles": done.design.triangle_count,
+        "area_mm2": {
+            "measured": deviation.area,
+            "excess": deviation.excess_area,
+            "gouge": deviation.gouge_area,
+            "not_reached": deviation.not_reached_area,
+        },
+        "deviation_mm": {
+            "mean": deviation.mean,
+            "rms": deviation.rms,
+            "least": deviation.least,
+            "most": deviation.most,
+            "percentiles": dict(zip(("1", "5", "25", "50", "75", "95", "99"), deviation.percentiles)),
+        },
+        "histogram": {"lo": -reach, "hi": reach, "area_mm2": list(deviation.histogram(-reach, reach, 80))},
+    }
+    made["findings"] = [
+        {
+            "severity": finding.severity,
+            "text": finding.text,
+            "operation": finding.operation,
+            "line": finding.line,
+            "move": finding.move,
+            "place": None if finding.place is None else list(finding.place),
+        }
+        for finding in done.findings
+    ]
+    return made
+
+
 def _mesh(mesh: Optional[_native.Mesh]) -> Optional[dict[str, Any]]:
     if mesh is None:
         return None
@@ -112,19 +154,23 @@ def summary(report: dict[str, Any]) -> str:
 
 def write(report: dict[str, Any], path: str) -> None:
     """Write a report as JSON, beside the target and renamed, so that a failure loses nothing. OSError."""
+    write_text(json.dumps(report, indent=2, allow_nan=False) + "\n", path)
+
+
+def write_text(text: str, path: str) -> None:
+    """Write a text, beside the target and renamed, so that a failure loses nothing. OSError."""
     try:
-        _write(report, path)
+        _write(text, path)
     except OSError as error:
         raise OSError(f"{path}: cannot write: {error.strerror or error}") from None
 
 
-def _write(report: dict[str, Any], path: str) -> None:
+def _write(text: str, path: str) -> None:
     folder = os.path.dirname(os.path.abspath(path))
-    handle, temporary = tempfile.mkstemp(dir=folder, prefix=".swarf-", suffix=".json")
+    handle, temporary = tempfile.mkstemp(dir=folder, prefix=".swarf-")
     try:
-        with os.fdopen(handle, "w", encoding="ascii") as stream:
-            json.dump(report, stream, indent=2, allow_nan=False)
-            stream.write("\n")
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
         umask = os.umask(0)  # mkstemp makes private files; a report is an ordinary one
         os.umask(umask)
         os.chmod(temporary, 0o666 & ~umask)

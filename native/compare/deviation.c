@@ -102,8 +102,9 @@ static swarf_status measure_piece(void *context, size_t index)
     return SWARF_OK;
 }
 
-/* Mark the points beyond tolerance that lie on the first stock. */
-static swarf_status mark_untouched(swarf_samples *samples, const swarf_stock *first, double voxel)
+/* Mark the points beyond tolerance that lie on the first stock. An allowance cannot be left where the stock has none.
+ */
+static swarf_status mark_untouched(swarf_samples *samples, const swarf_deviation_options *o, double voxel)
 {
     size_t count = 0;
     for (size_t i = 0; i < samples->count; i++) count += samples->samples[i].beyond;
@@ -114,11 +115,14 @@ static swarf_status mark_untouched(swarf_samples *samples, const swarf_stock *fi
     size_t used = 0;
     for (size_t i = 0; i < samples->count && status == SWARF_OK; i++)
         for (size_t k = 0; k < 3 && samples->samples[i].beyond; k++) points[used++] = samples->samples[i].xyz[k];
-    if (status == SWARF_OK) status = swarf_stock_sample((swarf_stock *)first, points, count, values);
+    if (status == SWARF_OK) status = swarf_stock_sample((swarf_stock *)o->first, points, count, values);
     used = 0;
-    for (size_t i = 0; i < samples->count && status == SWARF_OK; i++)
-        if (samples->samples[i].beyond && fabs((double)values[used++]) < untouched_error * voxel)
-            samples->samples[i].kind |= SWARF_POINT_UNTOUCHED;
+    for (size_t i = 0; i < samples->count && status == SWARF_OK; i++) {
+        swarf_sample *sample = &samples->samples[i];
+        if (!sample->beyond || !(fabs((double)values[used++]) < untouched_error * voxel)) continue;
+        sample->kind |= SWARF_POINT_UNTOUCHED;
+        if (sample->value < 0 && sample->value + o->allowance_mm > -o->gouge_mm) sample->beyond = 0;
+    }
     free(points);
     free(values);
     return status;
@@ -213,7 +217,7 @@ static swarf_status measure(swarf_deviation *d, const swarf_stock *stock, const 
     SWARF_TRY(swarf_sample_stock(stock, progress, 0, 0.1, &d->on_stock));
     struct work work = {design, o, &d->on_stock, voxel};
     SWARF_TRY(swarf_parallel_for((d->on_stock.count + PIECE - 1) / PIECE, measure_piece, &work, progress, 0.1, 0.5));
-    if (o->first) SWARF_TRY(mark_untouched(&d->on_stock, o->first, voxel));
+    if (o->first) SWARF_TRY(mark_untouched(&d->on_stock, o, voxel));
     double counted;
     SWARF_TRY(sum_up(d, &counted));
     const double spacing = fmax(voxel, sqrt(design->facts.area_mm2 / most_design_points));

@@ -104,6 +104,11 @@ SWARF_API swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, co
  *  well. `size` bytes at most. */
 SWARF_API swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, char *text, size_t size);
 
+/** Tint `count` shaded pixels (RGBA, 8 bits, sRGB) by their deviations: green within +-tolerance, by yellow to red for
+ *  material left and by cyan to blue for material missing at +-4 tolerances and beyond; NAN leaves a pixel as it is.
+ *  SWARF_ERROR_ARGUMENT: NULL, a tolerance that is not positive. */
+SWARF_API swarf_status swarf_deviation_colours(const double *value, size_t count, double tolerance, uint8_t *rgba);
+
 #ifdef __cplusplus
 }
 #endif

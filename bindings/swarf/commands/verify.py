@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""``swarf verify``: is what a program leaves of its stock the design?"""
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from typing import Any
+
+from .. import _native, document, readers, report, specs
+from ..console import DONE, FINDINGS, check_outputs, one_line
+from ..progress import Bar
+from ..simulate import DEFAULT_RESOLUTION
+from ..verify import DESIGN_SUFFIXES, read_design, verify
+from .simulate import add_tools, check_gcode_job
+
+#: More findings than this are left to the report.
+FINDINGS_SHOWN = 20
+
+REPORT_SUFFIXES = (".html", ".json")
+
+
+def add(subparsers: Any) -> None:
+    """Add the parser of ``swarf verify``."""
+    command = subparsers.add_parser(
+        "verify",
+        help="hold what a program leaves against the design",
+        description="Simulate the program in INPUT and hold what is left of the stock against the design. Exit status: "
+        "0 passed, 1 failed, 2 could not run. Lengths in mm.",
+    )
+    command.add_argument("input", metavar="INPUT", help="a G-code file, or a .FCStd file where the add-on is installed")
+    command.add_argument("--design", metavar="FILE",
+                         help=f"{' '.join(DESIGN_SUFFIXES)}; default: the model of the job in a .FCStd file")
+    command.add_argument("--tolerance", metavar="MM", type=float, default=0.05, help="both ways (default 0.05)")
+    command.add_argument("--excess", metavar="MM", type=float, help="tolerance for material left")
+    command.add_argument("--gouge", metavar="MM", type=float, help="tolerance for material missing")
+    command.add_argument("--allowance", metavar="MM", type=float, default=0.0, help="material meant to be left")
+    command.add_argument("--complete", action="store_true",
+                         help="material left where no move went is an error, not a warning")
+    command.add_argument("--job", metavar="NAME", help="the job in a .FCStd file, if it has several")
+    command.add_argument("--stock", metavar="SPEC", help=specs.STOCK_HELP)
+    command.add_argument("--tool", metavar="N=SPEC", action="append", default=[],
+                         help="tool number N, e.g. 1=flat:d=3,l=18 (repeatable)")
+    size = command.add_mutually_exclusive_group()
+    size.add_argument("--voxel", metavar="MM", type=float, help="edge of a voxel")
+    size.add_argument("--resolution", metavar="N", type=float,
+                      help=f"voxels along the stock's longest edge (default {DEFAULT_RESOLUTION})")
+    command.add_argument("--threads", metavar="T", type=int, default=0, help="threads to use (default: all cores)")
+    command.add_argument("--report", metavar="FILE", action="append", default=[],
+                         help="write a report: .html .json (repeatable)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Simulate, compare, write the reports, say what was found."""
+    if abs(arguments.threads) >= 1 << 31:  # no int of C's: the library could not say so
+        raise ValueError(f"threads: {arguments.threads} is not in 0 .. 1024 (0: one per core)")
+    _native.set_threads(arguments.threads)
+    for path in arguments.report:
+        if os.path.splitext(path)[1].lower() not in REPORT_SUFFIXES:
+            raise ValueError(f"{path}: unknown suffix; a report is {' or '.join(REPORT_SUFFIXES)}")
+    check_outputs(arguments.report, arguments.input)
+    design = None if arguments.design is None else read_design(arguments.design)
+
+    with Bar() as bar:
+        started = time.perf_counter()
+        job = readers.read(arguments.input, arguments.job, lambda fraction: bar("read", fraction))
+        if arguments.stock is not None:
+            job.stock = specs.stock(arguments.stock)
+        add_tools(job, arguments.tool)
+        if os.path.splitext(arguments.input)[1].lower() in readers.GCODE_SUFFIXES:
+            check_gcode_job(job, arguments.input)
+        if design is None and job.design is None:
+            raise ValueError(f"{arguments.input}: it has no design to verify against; give --design FILE")
+        seconds_read = time.perf_counter() - started
+        done = verify(
+            job, design, tolerance=arguments.tolerance, excess=arguments.excess, gouge=arguments.gouge,
+            allowance=arguments.allowance, complete=arguments.complete, voxel=arguments.voxel,
+            resolution=arguments.resolution, progress=bar)
+        made = report.make_verification(done, arguments.input, seconds_read)
+        for path in arguments.report:
+            if os.path.splitext(path)[1].lower() == ".html":
+                report.write_text(document.make(done, made, lambda fraction: bar("pictures", fraction)), path)
+            else:
+                report.write(made, path)
+    for note in job.notes:
+        print(f"swarf: note: {one_line(note)}", file=sys.stderr)
+    for finding in done.findings[:FINDINGS_SHOWN]:
+        where = f" line {finding.line}:" if finding.line else ""
+        place = "" if finding.place is None else " at ({:.2f}, {:.2f}, {:.2f})".format(*finding.place)
+        print(f"swarf: {finding.severity}:{where} {one_line(finding.text)}{place}", file=sys.stderr)
+    if len(done.findings) > FINDINGS_SHOWN:
+        print(f"swarf: note: {len(done.findings) - FINDINGS_SHOWN} more findings are in the report", file=sys.stderr)
+    print(f"{arguments.input}: {'passed' if done.passed else 'FAILED'}, tolerance +{done.tolerance[0]:g} "
+          f"-{done.tolerance[1]:g} mm, voxel {done.result.stock.voxel:g} mm")
+    return DONE if done.passed else FINDINGS

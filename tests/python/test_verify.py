@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Verification: known deviations are found with their line, reports are whole, bad designs are refused."""
+import json
+import math
+import re
+import subprocess
+import sys
+
+import pytest
+
+import swarf
+from swarf import document, report
+from swarf.job import Job
+
+LO, HI = (0.0, 0.0, -10.0), (40.0, 30.0, 0.0)
+
+
+def box(lo, hi):
+    corners = [[(lo, hi)[i >> k & 1][k] for k in range(3)] for i in range(8)]
+    quads = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+    return swarf.Mesh(corners, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+
+
+def faced(depth, gouge=0.0):
+    """A block faced to a depth by lines 1 to 30; line 40 cuts deeper once."""
+    program = swarf.Program(start=(-10, -10, 5))
+    program.add_operation("face")
+    program.set_section(tool=1, spindle="cw", spindle_rpm=8000)
+    line = 1
+    for y in range(0, 31, 3):
+        program.add_line((-5, y, 5), line=line, kind="rapid")
+        program.add_line((-5, y, -depth), feed_mm_min=200, line=line + 1)
+        program.add_line((45, y, -depth), feed_mm_min=400, line=line + 2)
+        program.add_line((45, y, 5), line=line + 2, kind="rapid")
+        line += 3
+    if gouge:
+        program.add_line((10, 15, 5), line=40, kind="rapid")
+        program.add_line((10, 15, -depth - gouge), feed_mm_min=100, line=40)
+        program.add_line((20, 15, -depth - gouge), feed_mm_min=100, line=40)
+        program.add_line((20, 15, 5), line=41, kind="rapid")
+    return Job("faced", program, {1: swarf.Cutter("flat:d=6,l=20")}, {1: "flat 6"}, {"kind": "box", "lo": LO, "hi": HI})
+
+
+DESIGN = box(LO, (40.0, 30.0, -1.0))
+
+
+def test_nothing_wrong():
+    done = swarf.verify(faced(1.0), DESIGN, tolerance=0.02, voxel=0.25)
+    assert done.passed and not done.findings
+    assert done.deviation.comparison.gouge_mm3 < 0.5
+    assert abs(done.deviation.most) < 0.006 and abs(done.deviation.least) < 0.006
+    assert len(done.deviation.points) == len(done.deviation.values) == len(done.deviation.kinds)
+    assert math.isclose(sum(done.deviation.histogram(-1, 1, 9)), done.deviation.area, rel_tol=0.2)
+
+
+def test_a_gouge_names_its_line():
+    done = swarf.verify(faced(1.0, 0.2), DESIGN, voxel=0.25)
+    assert not done.passed
+    (found,) = done.findings
+    assert found.severity == "error" and found.operation == "face" and found.line in (40, 41)
+    assert math.isclose(found.cluster.value, -0.2, abs_tol=0.006)
+    assert math.isclose(found.cluster.volume, 0.2 * (60 + 9 * math.pi), rel_tol=0.05)
+
+
+def test_too_deep_and_too_high():
+    deep = swarf.verify(faced(1.03), DESIGN, tolerance=0.02, voxel=0.25)
+    assert [found.cluster.kind for found in deep.findings] == ["gouge"]
+    assert math.isclose(deep.findings[0].cluster.value, -0.03, abs_tol=0.006)
+    high = swarf.verify(faced(0.9), DESIGN, voxel=0.25)
+    assert [found.cluster.kind for found in high.findings] == ["excess"]
+    assert swarf.verify(faced(0.9), DESIGN, excess=0.2, gouge=0.01, voxel=0.25).passed
+    assert swarf.verify(faced(0.9), DESIGN, allowance=0.1, voxel=0.25).passed
+
+
+def test_where_no_move_went():
+    design = box(LO, (40.0, 30.0, -1.0))
+    job = faced(1.0)
+    job.stock = {"kind": "box", "lo": (0.0, 0.0, -12.0), "hi": HI}
+    done = swarf.verify(job, design, voxel=0.25)
+    assert done.passed and [found.severity for found in done.findings] == ["warning"]
+    assert math.isclose(done.findings[0].cluster.volume, 2 * 40 * 30, rel_tol=0.01)
+    assert not swarf.verify(job, design, voxel=0.25, complete=True).passed
+
+
+def test_designs_that_cannot_be():
+    job = faced(1.0)
+    with pytest.raises(ValueError, match="no design"):
+        swarf.verify(job)
+    open_box = swarf.Mesh(DESIGN.vertices, [list(row) for row in DESIGN.triangles.tolist()][:-1])
+    with pytest.raises(swarf.GeometryError, match="open edges"):
+        swarf.verify(job, open_box, voxel=0.5)
+    turned = swarf.Mesh(DESIGN.vertices, [row[::-1] for row in DESIGN.triangles.tolist()])
+    with pytest.raises(swarf.GeometryError, match="inside out"):
+        swarf.verify(job, turned, voxel=0.5)
+    inch = box(tuple(v / 25.4 for v in LO), (40 / 25.4, 30 / 25.4, -1 / 25.4))
+    assert any("inches" in found.text for found in swarf.verify(job, inch, voxel=0.5).findings)
+    beside = box((100.0, 0.0, -10.0), (140.0, 30.0, -1.0))
+    assert any("beside" in found.text for found in swarf.verify(job, beside, voxel=0.5).findings)
+    with pytest.raises(ValueError, match="tolerance"):
+        swarf.verify(job, DESIGN, voxel=0.5, tolerance=-1)
+
+
+def test_solid():
+    solid = swarf.Solid(DESIGN)
+    assert solid.open_edges == 0 and solid.triangle_count == 12
+    assert math.isclose(solid.volume, 40 * 30 * 9, rel_tol=1e-6)
+    assert solid.distance([(20, 15, -5), (20, 15, 0), (43, 34, -5)]).tolist() == pytest.approx([-4, 1, 5])
+    with pytest.raises(ValueError):
+        solid.distance([(0, 0, float("nan"))])
+
+
+def test_reports(tmp_path):
+    done = swarf.verify(faced(1.0, 0.2), DESIGN, voxel=0.5)
+    made = report.make_verification(done, "faced.nc")
+    text = document.make(done, made)
+    assert "FAILED" in text and "gouge" in text
+    assert not re.search(r"(src|href)=\"(?!data:)", text), "it must need nothing else"
+    assert text.count("<img ") == len(document.VIEWS) + 1
+    report.write(made, str(tmp_path / "r.json"))
+    read = json.loads((tmp_path / "r.json").read_text())
+    assert read["verification"]["passed"] is False
+    assert read["findings"][0]["line"] in (40, 41)
+    assert math.isclose(sum(read["verification"]["histogram"]["area_mm2"]), done.deviation.area, rel_tol=0.3)
+
+
+def test_command(tmp_path):
+    gcode = tmp_path / "face.nc"
+    gcode.write_text("G21 G90\nT1 M6\nM3 S8000\nG0 X-5 Y0 Z5\n" + "".join(
+        f"G0 X-5 Y{y} Z5\nG1 Z-1 F200\nX45 F400\nG0 Z5\n" for y in range(0, 31, 3)) + "M2\n")
+    DESIGN.write(str(tmp_path / "part.stl"))
+    words = [sys.executable, "-m", "swarf", "verify", str(gcode), "--design", str(tmp_path / "part.stl"), "--voxel", "0.5",
+             "--stock", "box:0,0,-10,40,30,0", "--tool", "1=flat:d=6,l=20"]
+    done = subprocess.run([*words, "--report", str(tmp_path / "r.html")], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert "passed" in done.stdout and (tmp_path / "r.html").read_text().startswith("<!DOCTYPE html>")
+    done = subprocess.run([*words, "--allowance", "0.5"], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 1 and "gouge" in done.stderr
+    done = subprocess.run([*words, "--report", str(tmp_path / "r.pdf")], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2 and "r.pdf" in done.stderr
