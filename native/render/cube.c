@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* A cube's slots and their upper neighbours. */
-enum { AROUND = SWARF_CUBE_EDGE + 1 };
+enum { AROUND = SWARF_CUBE_SLOTS + 1 };
 
 typedef struct around {
     const float *values[AROUND][AROUND][AROUND];
@@ -176,9 +176,9 @@ swarf_status swarf_cube_make(swarf_cube *cube, const swarf_tree *tree, const swa
         return SWARF_OK;
     }
     find_signs(tiles, &a);
-    for (int x = 0; x < SWARF_CUBE_EDGE; x++)
-        for (int y = 0; y < SWARF_CUBE_EDGE; y++)
-            for (int z = 0; z < SWARF_CUBE_EDGE; z++) {
+    for (int x = 0; x < SWARF_CUBE_SLOTS; x++)
+        for (int y = 0; y < SWARF_CUBE_SLOTS; y++)
+            for (int z = 0; z < SWARF_CUBE_SLOTS; z++) {
                 uint64_t stop[8];
                 if (is_deep(&a, tiles, x, y, z) || !find_stops(&a, x, y, z, stop)) continue;
                 const swarf_status status = add_slot(cube, &a, x, y, z, stop);

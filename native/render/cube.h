@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-enum { SWARF_CUBE_EDGE = 4, SWARF_CUBE_ENTRIES = 64, SWARF_CUBE_DIM = 32 };
+enum { SWARF_CUBE_DIM = SWARF_CUBE_SLOTS * SWARF_LEAF_DIM };
 
 /** What cubes see of tiles: 512 equal values each. */
 typedef struct swarf_cube_tiles {

@@ -31,6 +31,7 @@ typedef struct cube_grid {
 struct swarf_scene {
     swarf_stock *stock;
     swarf_tree_layout layout;
+    uint32_t seen; /* the stock's generation that the cubes show, 0: none */
     cube_grid grid;
     const swarf_cube **list;
     size_t list_count;
@@ -69,6 +70,7 @@ static swarf_status lay_out(swarf_scene *scene)
     for (int axis = 0; axis < 3; axis++)
         grid.count[axis] = scene->layout.count[axis] * (SWARF_NODE_DIM / SWARF_CUBE_DIM) + 1;
     if (scene->grid.cube && memcmp(grid.count, scene->grid.count, sizeof grid.count) == 0) return SWARF_OK;
+    scene->seen = 0;
     grid.cube = calloc(grid_size(&grid), sizeof *grid.cube);
     if (!grid.cube) return swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory for %zu cubes", grid_size(&grid));
     free_grid(scene);
@@ -102,13 +104,32 @@ static swarf_status refresh_cube(swarf_scene *scene, size_t number, const int32_
     return status;
 }
 
+/** Whether a slot that the cells of this cube see has changed since the scene last looked. */
+static int is_stale(const swarf_scene *scene, const int32_t at[3])
+{
+    enum { ACROSS = SWARF_NODE_DIM / SWARF_CUBE_DIM };
+    for (int number = 0; number < 8; number++) {
+        const int32_t up[3] = {at[0] - 1 + (number >> 2), at[1] - 1 + (number >> 1 & 1), at[2] - 1 + (number & 1)};
+        size_t node = 0;
+        unsigned cube = 0;
+        int out = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            out |= up[axis] < 0 || up[axis] >= ACROSS * scene->layout.count[axis];
+            node = node * (size_t)scene->layout.count[axis] + (size_t)(up[axis] / ACROSS);
+            cube = cube * ACROSS + (unsigned)(up[axis] % ACROSS);
+        }
+        if (!out && swarf_stock_stamp(scene->stock, node, cube) > scene->seen) return 1;
+    }
+    return 0;
+}
+
 static swarf_status refresh_row(void *context, size_t row)
 {
     swarf_scene *scene = context;
     const cube_grid *grid = &scene->grid;
     int32_t at[3] = {(int32_t)row / grid->count[1], (int32_t)row % grid->count[1], 0};
     for (; at[2] < grid->count[2]; at[2]++)
-        SWARF_TRY(refresh_cube(scene, row * (size_t)grid->count[2] + (size_t)at[2], at));
+        if (is_stale(scene, at)) SWARF_TRY(refresh_cube(scene, row * (size_t)grid->count[2] + (size_t)at[2], at));
     return SWARF_OK;
 }
 
@@ -142,12 +163,21 @@ static swarf_status list_cubes(swarf_scene *scene)
 /** With the stock entered. */
 static swarf_status refresh(swarf_scene *scene)
 {
-    scene->list_count = 0; /* until all is in place: a failure leaves a scene of nothing */
+    const uint32_t generation = swarf_stock_generation(scene->stock);
+    if (scene->seen == generation) return SWARF_OK;
+    scene->list_count = 0; /* until all is in place: a failure leaves a scene of nothing, and all of it stale */
     SWARF_TRY(lay_out(scene));
-    SWARF_TRY(swarf_parallel_for((size_t)scene->grid.count[0] * (size_t)scene->grid.count[1], refresh_row, scene, NULL,
-                                 0, 1));
-    SWARF_TRY(list_cubes(scene));
-    return swarf_accel_set(scene->accel, scene->list, scene->list_count);
+    swarf_status status =
+        swarf_parallel_for((size_t)scene->grid.count[0] * (size_t)scene->grid.count[1], refresh_row, scene, NULL, 0, 1);
+    scene->seen = 0;
+    if (status == SWARF_OK) status = list_cubes(scene);
+    if (status == SWARF_OK) status = swarf_accel_set(scene->accel, scene->list, scene->list_count);
+    if (status != SWARF_OK) {
+        scene->list_count = 0;
+        return status;
+    }
+    scene->seen = generation;
+    return SWARF_OK;
 }
 
 swarf_status swarf_scene_create(swarf_stock *stock, swarf_scene **out)
@@ -170,10 +200,9 @@ swarf_status swarf_scene_create(swarf_stock *stock, swarf_scene **out)
 swarf_status swarf_scene_update(swarf_scene *scene)
 {
     SWARF_REQUIRE(scene, "scene: missing");
-    SWARF_TRY(swarf_stock_enter_read(scene->stock));
-    const swarf_status status = refresh(scene);
-    swarf_stock_leave(scene->stock);
-    return status;
+    SWARF_TRY(swarf_scene_enter(scene));
+    swarf_scene_leave(scene);
+    return SWARF_OK;
 }
 
 void swarf_scene_destroy(swarf_scene *scene)
@@ -187,7 +216,10 @@ void swarf_scene_destroy(swarf_scene *scene)
 
 swarf_status swarf_scene_enter(swarf_scene *scene)
 {
-    return swarf_stock_enter_read(scene->stock);
+    SWARF_TRY(swarf_stock_enter_read(scene->stock));
+    const swarf_status status = refresh(scene);
+    if (status != SWARF_OK) swarf_stock_leave(scene->stock);
+    return status;
 }
 
 void swarf_scene_leave(swarf_scene *scene)
