@@ -2,8 +2,10 @@
 /* Scene: what is shown of a stock, its pictures, and what is at a place of them. */
 #include "native.h"
 
-static const char *const seen_names[] = {"nothing", "stock"};
-enum { SEEN_COUNT = sizeof seen_names / sizeof seen_names[0] };
+static const char *const seen_names[] = {"nothing", "stock", "section", "flutes", "shank", "holder", "fixture"};
+_Static_assert(sizeof seen_names / sizeof seen_names[0] == SWARF_SEEN_COUNT, "one name per thing");
+static const char *const colouring_names[] = {"material", "operation", "tool", "age", "feed", "deviation"};
+_Static_assert(sizeof colouring_names / sizeof colouring_names[0] == SWARF_COLOURING_COUNT, "one name per colouring");
 static const char *const buffer_names[] = {"rgba", "depth", "normal", "position", "move", "seen"};
 enum { RGBA, DEPTH, NORMAL, POSITION, MOVE, SEEN, BUFFER_COUNT };
 _Static_assert(sizeof buffer_names / sizeof buffer_names[0] == BUFFER_COUNT, "one name per buffer");
@@ -87,7 +89,8 @@ static PyGetSetDef picture_getset[] = {
     {"move", picture_buffer, NULL,
      "(height, width) int32 view: the move that made the surface; -1: the stock as it was, or not known.",
      (void *)(intptr_t)MOVE},
-    {"seen", picture_buffer, NULL, "(height, width) uint8 view: what is seen, 0 nothing, 1 stock.",
+    {"seen", picture_buffer, NULL,
+     "(height, width) uint8 view: what is seen, 0 nothing, 1 stock, 2 section, 3 flutes, 4 shank, 5 holder, 6 fixture.",
      (void *)(intptr_t)SEEN},
     {NULL, NULL, NULL, NULL, NULL},
 };
@@ -186,6 +189,31 @@ static PyObject *scene_update(PyObject *self, PyObject *Py_UNUSED(none))
     Py_RETURN_NONE;
 }
 
+static PyObject *scene_set_fixtures(PyObject *self, PyObject *meshes)
+{
+    module_state *state = state_of(self);
+    PyObject *list = PySequence_Tuple(meshes), *result = NULL;
+    if (!list) return NULL;
+    const Py_ssize_t count = PyTuple_Size(list);
+    swarf_triangles *triangles = PyMem_Malloc((size_t)(count + 1) * sizeof *triangles);
+    int failed = !triangles;
+    if (failed) PyErr_NoMemory();
+    for (Py_ssize_t i = 0; i < count && !failed; i++) {
+        PyObject *mesh = PyTuple_GetItem(list, i);
+        failed = !PyObject_TypeCheck(mesh, state->mesh);
+        if (failed) PyErr_Format(PyExc_TypeError, "fixtures[%zd]: needs a Mesh", i);
+        if (!failed) triangles[i] = swarf_mesh_triangles(((mesh_object *)mesh)->handle);
+    }
+    native_call call;
+    if (!failed && !call_begin(&call, NULL)) {
+        const swarf_status status = swarf_scene_set_fixtures(((scene_object *)self)->handle, triangles, (size_t)count);
+        if (call_end(&call, state, status) == 0) result = Py_NewRef(Py_None);
+    }
+    PyMem_Free(triangles);
+    Py_DECREF(list);
+    return result;
+}
+
 static int check_size(int width, int height)
 {
     /* Before pixels are allocated; libswarf checks again what it is given. */
@@ -208,41 +236,148 @@ static int read_colour(PyObject *object, const char *name, int count, float *out
     return PyErr_Occurred() ? -1 : 0;
 }
 
+/* Most planes that libswarf takes. */
+enum { SECTIONS_MAX = 6 };
+
+/** What a picture shows, from the keywords that render() and pick() share, and what it borrows of them. */
+typedef struct view {
+    swarf_picture_options options;
+    swarf_camera camera;
+    swarf_cut_plane section[SECTIONS_MAX];
+    swarf_box outline;
+    program_object *program; /* read while the call runs */
+    PyObject *values;        /* of the deviation: an exported buffer, NULL without */
+    Py_buffer buffer;
+} view;
+
+static void view_release(view *v)
+{
+    if (v->program) v->program->readers--;
+    if (v->values) PyBuffer_Release(&v->buffer);
+    v->program = NULL;
+    v->values = NULL;
+}
+
+static int view_sections(PyObject *object, view *v)
+{
+    PyObject *list = PySequence_Tuple(object);
+    if (!list) return -1;
+    const Py_ssize_t count = PyTuple_Size(list);
+    int failed = count > SECTIONS_MAX;
+    if (failed) PyErr_Format(PyExc_ValueError, "sections: %zd planes, more than %d", count, SECTIONS_MAX);
+    for (Py_ssize_t i = 0; i < count && !failed; i++) {
+        PyObject *pair = PySequence_Tuple(PyTuple_GetItem(list, i));
+        failed = !pair || PyTuple_Size(pair) != 2;
+        if (failed && !PyErr_Occurred()) PyErr_Format(PyExc_ValueError, "sections[%zd]: needs (point, normal)", i);
+        if (!failed)
+            failed = buffer_point(PyTuple_GetItem(pair, 0), "sections: point", v->section[i].point) ||
+                     buffer_point(PyTuple_GetItem(pair, 1), "sections: normal", v->section[i].normal);
+        Py_XDECREF(pair);
+    }
+    Py_DECREF(list);
+    v->options.section = v->section;
+    v->options.section_count = (size_t)count;
+    return failed ? -1 : 0;
+}
+
+static int view_cutter(module_state *state, PyObject *object, view *v)
+{
+    PyObject *pair = PySequence_Tuple(object);
+    int failed = !pair || PyTuple_Size(pair) != 2 || !PyObject_TypeCheck(PyTuple_GetItem(pair, 0), state->cutter);
+    if (failed && !PyErr_Occurred()) PyErr_SetString(PyExc_TypeError, "cutter: needs (Cutter, point of its tip)");
+    if (!failed) {
+        v->options.cutter = ((cutter_object *)PyTuple_GetItem(pair, 0))->handle; /* the caller's tuple keeps it */
+        failed = buffer_point(PyTuple_GetItem(pair, 1), "cutter: tip", v->options.cutter_tip);
+    }
+    Py_XDECREF(pair);
+    return failed ? -1 : 0;
+}
+
+static int view_values(PyObject *object, view *v)
+{
+    if (PyObject_GetBuffer(object, &v->buffer, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT)) return -1;
+    v->values = object;
+    const Py_ssize_t wanted = (Py_ssize_t)v->options.width * v->options.height * 4;
+    if (v->buffer.len != wanted || v->buffer.itemsize != 4 || !v->buffer.format || strcmp(v->buffer.format, "f") != 0) {
+        PyErr_Format(PyExc_ValueError, "values: needs width * height numbers of format 'f'");
+        return -1;
+    }
+    v->options.values = v->buffer.buf;
+    return 0;
+}
+
+/* The objects among the keywords; NULL or None where not given. */
+typedef struct view_objects {
+    PyObject *camera, *colour, *background, *background_top, *values, *sections, *cutter, *program, *outline;
+} view_objects;
+
+static int given(PyObject *object)
+{
+    return object && object != Py_None;
+}
+
+/** Fill the view; on failure nothing is held. */
+static int view_read(module_state *state, const view_objects *o, const char *colouring, view *v)
+{
+    v->camera = ((camera_object *)o->camera)->camera;
+    v->options.colouring = choice_find("colouring", colouring, colouring_names, SWARF_COLOURING_COUNT);
+    int failed = v->options.colouring < 0 || check_size(v->options.width, v->options.height) ||
+                 read_colour(o->colour, "colour", 3, v->options.colour) ||
+                 read_colour(o->background, "background", 4, v->options.background) ||
+                 read_colour(o->background_top, "background_top", 4, v->options.background_top) ||
+                 (given(o->sections) && view_sections(o->sections, v)) ||
+                 (given(o->cutter) && view_cutter(state, o->cutter, v)) ||
+                 (given(o->outline) && camera_box(o->outline, &v->outline)) ||
+                 (given(o->values) && view_values(o->values, v));
+    if (!failed && given(o->outline)) v->options.outline = &v->outline;
+    if (!failed && given(o->program)) {
+        failed = !PyObject_TypeCheck(o->program, state->program);
+        if (failed) PyErr_SetString(PyExc_TypeError, "program: needs a Program");
+        if (!failed) {
+            v->program = (program_object *)o->program;
+            v->program->readers++;
+            v->options.program = v->program->handle;
+        }
+    }
+    if (failed) view_release(v);
+    return failed ? -1 : 0;
+}
+
 static PyObject *scene_render(PyObject *self, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"camera",  "width",  "height",     "samples",        "coarse",   "budget_ms",
-                            "buffers", "colour", "background", "background_top", "progress", NULL};
+    static char *names[] = {"camera",         "width",      "height",    "samples",       "coarse",   "budget_ms",
+                            "buffers",        "edges",      "occlusion", "shadow",        "colour",   "background",
+                            "background_top", "colouring",  "values",    "value_range",   "sections", "cutter",
+                            "program",        "moves_done", "path",      "selected_line", "outline",  "axes",
+                            "progress",       NULL};
     module_state *state = state_of(self);
-    PyObject *camera, *buffers = NULL, *colour = NULL, *background = NULL, *background_top = NULL, *progress = NULL;
-    swarf_picture_options options = swarf_picture_options_default();
-    int width = options.width, height = options.height, samples = options.samples, coarse = options.coarse;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|ii$iidOOOOO:render", names, state->camera, &camera, &width,
-                                     &height, &samples, &coarse, &options.budget_ms, &buffers, &colour, &background,
-                                     &background_top, &progress) ||
-        check_size(width, height) || read_colour(colour, "colour", 3, options.colour) ||
-        read_colour(background, "background", 4, options.background) ||
-        read_colour(background_top, "background_top", 4, options.background_top))
+    PyObject *buffers = NULL, *progress = NULL;
+    const char *colouring = colouring_names[0];
+    view_objects objects = {0};
+    view v = {.options = swarf_picture_options_default()};
+    swarf_picture_options *o = &v.options;
+    if (!PyArg_ParseTupleAndKeywords(
+            args, keywords, "O!|ii$iidOpppOOOsOdOOOdpIOdO:render", names, state->camera, &objects.camera, &o->width,
+            &o->height, &o->samples, &o->coarse, &o->budget_ms, &buffers, &o->edges, &o->occlusion, &o->shadow,
+            &objects.colour, &objects.background, &objects.background_top, &colouring, &objects.values, &o->value_range,
+            &objects.sections, &objects.cutter, &objects.program, &o->moves_done, &o->path, &o->selected_line,
+            &objects.outline, &o->axes_mm, &progress) ||
+        view_read(state, &objects, colouring, &v))
         return NULL;
-    options.width = width;
-    options.height = height;
-    options.samples = samples;
-    options.coarse = coarse;
-    PyObject *only_colours = buffers && buffers != Py_None ? Py_NewRef(buffers) : Py_BuildValue("(s)", "rgba");
-    if (!only_colours) return NULL;
+    PyObject *names_of = given(buffers) ? Py_NewRef(buffers) : Py_BuildValue("(s)", "rgba");
     swarf_picture_buffers out;
-    picture_object *picture = picture_create(state, &options, only_colours, &out);
-    Py_DECREF(only_colours);
+    picture_object *picture = names_of ? picture_create(state, o, names_of, &out) : NULL;
+    Py_XDECREF(names_of);
     native_call call;
-    if (!picture) return NULL;
-    const swarf_camera seen_by = ((camera_object *)camera)->camera;
-    int failed = call_begin(&call, progress);
+    int failed = !picture || call_begin(&call, progress);
     if (!failed) {
         const swarf_status status =
-            swarf_scene_render(((scene_object *)self)->handle, &seen_by, &options, &call.progress, &out);
+            swarf_scene_render(((scene_object *)self)->handle, &v.camera, o, &call.progress, &out);
         failed = call_end(&call, state, status);
     }
+    view_release(&v);
     if (!failed) return (PyObject *)picture;
-    Py_DECREF(picture);
+    Py_XDECREF((PyObject *)picture);
     return NULL;
 }
 
@@ -263,18 +398,22 @@ PyStructSequence_Desc pick_desc = {
 
 static PyObject *scene_pick(PyObject *self, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"camera", "x", "y", "aspect", NULL};
+    static char *names[] = {"camera", "x", "y", "width", "height", "sections", "cutter", NULL};
     module_state *state = state_of(self);
-    PyObject *camera;
-    double x, y, aspect = 1;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!dd|d:pick", names, state->camera, &camera, &x, &y, &aspect))
+    double x, y;
+    view_objects objects = {0};
+    view v = {.options = swarf_picture_options_default()};
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!dd|ii$OO:pick", names, state->camera, &objects.camera, &x, &y,
+                                     &v.options.width, &v.options.height, &objects.sections, &objects.cutter) ||
+        view_read(state, &objects, colouring_names[0], &v))
         return NULL;
-    const swarf_camera seen_by = ((camera_object *)camera)->camera;
     swarf_pick pick;
     native_call call;
     call_begin(&call, NULL);
-    const swarf_status status = swarf_scene_pick(((scene_object *)self)->handle, &seen_by, aspect, x, y, &pick);
-    if (call_end(&call, state, status)) return NULL;
+    const swarf_status status = swarf_scene_pick(((scene_object *)self)->handle, &v.camera, &v.options, x, y, &pick);
+    const int failed = call_end(&call, state, status);
+    view_release(&v);
+    if (failed) return NULL;
     if (pick.seen == SWARF_SEEN_NOTHING) Py_RETURN_NONE;
     PyObject *result = PyStructSequence_New(state->pick);
     if (!result) return NULL;
@@ -291,15 +430,23 @@ static PyObject *scene_pick(PyObject *self, PyObject *args, PyObject *keywords)
 static PyMethodDef scene_methods[] = {
     {"update", scene_update, METH_NOARGS,
      "update($self, /)\n--\n\nTake over what changed in the stock. Without it the next picture does."},
+    {"set_fixtures", scene_set_fixtures, METH_O,
+     "set_fixtures($self, meshes, /)\n--\n\nShow these Mesh objects beside the stock, in place of those before."},
     {"render", WITH_KEYWORDS(scene_render), METH_VARARGS | METH_KEYWORDS,
      "render($self, camera, width=1280, height=960, *, samples=3, coarse=1, budget_ms=0.0, buffers=None, "
-     "colour=None, background=None, background_top=None, progress=None)\n--\n\n"
+     "edges=True, occlusion=True, shadow=False, colour=None, background=None, background_top=None, "
+     "colouring='material', values=None, value_range=0.1, sections=None, cutter=None, program=None, moves_done=0.0, "
+     "path=False, selected_line=0, outline=None, axes=0.0, progress=None)\n--\n\n"
      "A Picture. At edges samples x samples rays per pixel (1 .. 4); one ray for coarse x coarse pixels (1 .. 16), as\n"
-     "many as it takes to be done in about budget_ms when that is given. buffers: what is wanted of rgba (None), "
-     "depth,\n"
-     "normal, position, move and seen. Colours are linear, 0 .. 1: RGB of the material, RGBA of the background."},
+     "many as it takes to be done in about budget_ms when that is given. buffers: what is wanted of rgba (None),\n"
+     "depth, normal, position, move and seen. edges: dark lines; occlusion: dark corners; shadow: of the light.\n"
+     "Colours are linear, 0 .. 1: RGB of the material, RGBA of the background. colouring: material, operation, tool,\n"
+     "age or feed of the program's moves, or deviation from `values`, width * height float32 in mm, +-value_range.\n"
+     "sections: up to 6 (point, normal); what lies where a normal points to is taken away. cutter: (Cutter, tip).\n"
+     "program, moves_done: what is played, and how far; path: show it. selected_line stands out. outline: a box;\n"
+     "axes: mm of x, y, z."},
     {"pick", WITH_KEYWORDS(scene_pick), METH_VARARGS | METH_KEYWORDS,
-     "pick($self, camera, x, y, aspect=1.0)\n--\n\n"
+     "pick($self, camera, x, y, width=1280, height=960, *, sections=None, cutter=None)\n--\n\n"
      "The Pick at a place of the picture (x to the right and y upwards, -1 .. 1), or None where nothing is."},
     {NULL, NULL, 0, NULL},
 };

@@ -15,6 +15,7 @@ Table = Union[Buffer, Sequence[Sequence[float]]]
 PartKind = Literal["flutes", "shank", "holder"]
 View = Literal["isometric", "top", "bottom", "front", "rear", "left", "right"]
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
+Colouring = Literal["material", "operation", "tool", "age", "feed", "deviation"]
 Buffers = Literal["rgba", "depth", "normal", "position", "move", "seen"]
 
 class Error(Exception):
@@ -324,12 +325,13 @@ class Picture:
         """(height, width) int32 view: the move that made the surface; -1: the stock as it was, or not known."""
     @property
     def seen(self) -> Optional[memoryview]:
-        """(height, width) uint8 view: what is seen, 0 nothing, 1 stock."""
+        """(height, width) uint8 view: what is seen, 0 nothing, 1 stock, 2 section, 3 flutes, 4 shank, 5 holder,
+        6 fixture."""
 
 class Pick(NamedTuple):
     """What is seen at a place of a picture."""
 
-    seen: str
+    seen: Literal["stock", "section", "flutes", "shank", "holder", "fixture"]
     point: tuple[float, float, float]
     normal: tuple[float, float, float]
     move: int
@@ -342,6 +344,8 @@ class Scene:
     def __new__(cls, stock: Stock) -> Scene: ...
     def update(self, /) -> None:
         """Take over what changed in the stock. Without it the next picture does."""
+    def set_fixtures(self, meshes: Sequence[Mesh], /) -> None:
+        """Show these Mesh objects beside the stock, in place of those before."""
     def render(
         self,
         camera: Camera,
@@ -352,15 +356,43 @@ class Scene:
         coarse: int = 1,
         budget_ms: float = 0.0,
         buffers: Optional[Sequence[Buffers]] = None,
+        edges: bool = True,
+        occlusion: bool = True,
+        shadow: bool = False,
         colour: Optional[Sequence[float]] = None,
         background: Optional[Sequence[float]] = None,
         background_top: Optional[Sequence[float]] = None,
+        colouring: Colouring = "material",
+        values: Optional[Buffer] = None,
+        value_range: float = 0.1,
+        sections: Optional[Sequence[tuple[Point, Point]]] = None,
+        cutter: Optional[tuple[Cutter, Point]] = None,
+        program: Optional[Program] = None,
+        moves_done: float = 0.0,
+        path: bool = False,
+        selected_line: int = 0,
+        outline: Optional[Box] = None,
+        axes: float = 0.0,
         progress: Progress = None,
     ) -> Picture:
         """A Picture. At edges samples x samples rays per pixel (1 .. 4); one ray for coarse x coarse pixels (1 .. 16),
-        as many as it takes to be done in about budget_ms when that is given. buffers: what is wanted (None: rgba). Colours are
-        linear, 0 .. 1: RGB of the material, RGBA of the background."""
-    def pick(self, camera: Camera, x: float, y: float, aspect: float = 1.0) -> Optional[Pick]:
+        as many as it takes to be done in about budget_ms when that is given. buffers: what is wanted (None: rgba).
+        edges: dark lines; occlusion: dark corners; shadow: of the light. Colours are linear, 0 .. 1: RGB of the
+        material, RGBA of the background. colouring: by the program's moves, or deviation from ``values``, width *
+        height float32 in mm, +-value_range. sections: up to 6 (point, normal); what lies where a normal points to is
+        taken away. cutter: (Cutter, tip). program, moves_done: what is played, and how far; path: show it.
+        selected_line stands out. outline: a box; axes: mm of x, y, z."""
+    def pick(
+        self,
+        camera: Camera,
+        x: float,
+        y: float,
+        width: int = 1280,
+        height: int = 960,
+        *,
+        sections: Optional[Sequence[tuple[Point, Point]]] = None,
+        cutter: Optional[tuple[Cutter, Point]] = None,
+    ) -> Optional[Pick]:
         """The Pick at a place of the picture (x to the right and y upwards, -1 .. 1), or None where nothing is."""
 
 class Finding(NamedTuple):

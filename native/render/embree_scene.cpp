@@ -8,13 +8,7 @@
  */
 #include "render/embree_scene.h"
 
-#include "base/guard.hpp"
-
-#if SWARF_EMBREE_MAJOR >= 4
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
+#include "render/embree_device.hpp"
 
 #include <cmath>
 #include <limits>
@@ -30,32 +24,11 @@ namespace {
 /* Voxels by which bounds grow: more than the rounding of a float coordinate in a layout of 2^16 voxels (4e-3). */
 constexpr float bounds_padding = 1.0f / 64;
 
-#if RTC_VERSION_MAJOR >= 4
-using embree_context = RTCRayQueryContext;
-#else
-using embree_context = RTCIntersectContext;
-#endif
-
 struct packet {
-    embree_context context; /* first: Embree hands back a pointer to it */
+    swarf_embree_context context; /* first: Embree hands back a pointer to it */
     swarf_packet *rays;
     const swarf_ray_kernel *kernel;
 };
-
-/* One for the process, on first use, never released: releasing many crashed Embree 3. */
-RTCDevice shared_device()
-{
-    static const RTCDevice device = rtcNewDevice(nullptr);
-    return device;
-}
-
-swarf_status fail_embree(const char *what)
-{
-    const RTCError error = rtcGetDeviceError(shared_device());
-    if (error == RTC_ERROR_OUT_OF_MEMORY)
-        return swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory in Embree (%s)", what);
-    return swarf_fail(SWARF_ERROR_INTERNAL, "scene: Embree error %d (%s)", static_cast<int>(error), what);
-}
 
 const swarf_cube *cube_of(const void *user, unsigned number)
 {
@@ -121,15 +94,12 @@ void load_lane(RTCRayHitN *rayhit, unsigned n, unsigned lane, const swarf_packet
 extern "C" swarf_status swarf_accel_create(swarf_accel **out)
 {
     return swarf_guard("scene", [&]() -> swarf_status {
-        RTCDevice device = shared_device();
-        if (!device)
-            return swarf_fail(SWARF_ERROR_INTERNAL, "scene: Embree does not start (error %d)",
-                              static_cast<int>(rtcGetDeviceError(nullptr)));
-        swarf_accel *accel = new swarf_accel{rtcNewScene(device), nullptr, nullptr};
-        if (accel->scene) accel->geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+        SWARF_TRY(swarf_embree_check("device"));
+        swarf_accel *accel = new swarf_accel{rtcNewScene(swarf_embree_device()), nullptr, nullptr};
+        if (accel->scene) accel->geometry = rtcNewGeometry(swarf_embree_device(), RTC_GEOMETRY_TYPE_USER);
         if (!accel->geometry) {
             swarf_accel_destroy(accel);
-            return fail_embree("new scene");
+            return swarf_embree_check("new scene");
         }
         rtcSetSceneFlags(accel->scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
         rtcSetGeometryUserData(accel->geometry, accel);
@@ -161,14 +131,10 @@ extern "C" swarf_status swarf_accel_set(swarf_accel *accel, const swarf_cube *co
 {
     return swarf_guard("scene", [&]() -> swarf_status {
         if (count > 0xfffffffeu) return swarf_fail(SWARF_ERROR_MEMORY, "scene: %zu cubes are too many", count);
-        (void)rtcGetDeviceError(shared_device());
         commit(accel, cubes, count);
-        const RTCError error = rtcGetDeviceError(shared_device());
-        if (error == RTC_ERROR_NONE) return SWARF_OK;
-        commit(accel, nullptr, 0);
-        return error == RTC_ERROR_OUT_OF_MEMORY
-                   ? swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory for %zu cubes", count)
-                   : swarf_fail(SWARF_ERROR_INTERNAL, "scene: Embree error %d", static_cast<int>(error));
+        const swarf_status status = swarf_embree_check("cubes");
+        if (status != SWARF_OK) commit(accel, nullptr, 0);
+        return status;
     });
 }
 
@@ -177,28 +143,12 @@ extern "C" void swarf_accel_trace(const swarf_accel *accel, swarf_packet *rays, 
     packet p;
     p.rays = rays;
     p.kernel = swarf_ray_kernel_current();
-#if RTC_VERSION_MAJOR >= 4
-    rtcInitRayQueryContext(&p.context);
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.context = &p.context;
-    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    RTCIntersectArguments *const query = &arguments;
-#else
-    rtcInitIntersectContext(&p.context);
-    p.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    RTCIntersectContext *const query = &p.context;
-#endif
     if (active == 0) return;
     const unsigned first = static_cast<unsigned>(__builtin_ctz(active));
     if ((active & (active - 1)) == 0) {
         RTCRayHit single;
         load_lane(reinterpret_cast<RTCRayHitN *>(&single), 1, 0, *rays, first);
-#if RTC_VERSION_MAJOR >= 4
-        rtcIntersect1(accel->scene, &single, query);
-#else
-        rtcIntersect1(accel->scene, query, &single);
-#endif
+        swarf_embree_intersect1(accel->scene, &single, &p.context);
         return;
     }
     alignas(64) int valid[SWARF_PACKET];
@@ -209,9 +159,5 @@ extern "C" void swarf_accel_trace(const swarf_accel *accel, swarf_packet *rays, 
         /* Idle lanes repeat a ray: Embree may look at their numbers before the mask. */
         load_lane(reinterpret_cast<RTCRayHitN *>(&packet16), SWARF_PACKET, lane, *rays, is_active ? lane : first);
     }
-#if RTC_VERSION_MAJOR >= 4
-    rtcIntersect16(valid, accel->scene, &packet16, query);
-#else
-    rtcIntersect16(valid, accel->scene, query, &packet16);
-#endif
+    swarf_embree_intersect16(valid, accel->scene, &packet16, &p.context);
 }

@@ -1,250 +1,131 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Picture: camera rays in packets, antialiasing, and what the caller wants to know of each pixel.
+/* Picture: camera rays in packets, then light, shading, lines, and what the caller wants to know of each pixel.
  *
- *   middle    one sight per grid square (a pixel, or coarse * coarse of them), rows from the top; packets of 4 x 4
- *   rough     numbers of the squares where a square and its eight neighbours do not see one smooth face
- *
- * Each pass goes over rows or squares on all cores and writes only what is its own; samples are summed in a fixed
- * order: the picture is the same for any number of threads. Colours are summed premultiplied in linear light.
+ * Each pass goes over rows or tiles on all cores and writes only what is its own; samples are summed in a fixed order:
+ * the picture is the same for any number of threads.
  */
+#include "render/picture.h"
+
 #include "base/parallel.h"
 #include "base/status.h"
-#include "render/look.h"
-#include "render/shade.h"
 #include "render/vector.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-/* A tile of rays finds in the nearer caches what the rays beside it brought there. */
-enum { TILE = 32, PACKET_EDGE = 4, PIXELS_MAX = 16384, SAMPLES_MAX = 4, COARSE_MAX = 16 };
+enum { PACKET_EDGE = 4, PIXELS_MAX = 16384, SAMPLES_MAX = 4, COARSE_MAX = 16 };
 
 _Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a square are one packet");
 
-/* One face: neighbours' normals differ by at most 2.5 degrees, and each lies in the plane of the other to 1 in 20 of
- * their distance, so that steps of more than 1/20 pixel show. Larger values save rays and leave jagged edges. */
-static const float same_face_cosine = 0.999f;
-static const double same_face_slope = 0.05;
-
-/* Squares that one piece of work takes: some 0.1 ms. */
-enum { PIECE = 256 };
-
-typedef struct picture {
-    const swarf_picture_options *options;
-    swarf_look look;
-    swarf_shading shading;
-    int32_t coarse;
-    int32_t width, height; /* of the grid */
-    swarf_sight *middle;
-    size_t *rough_before; /* rough squares in the rows before this one; height + 1 entries */
-    size_t *rough;
-    size_t rough_count;
-    float (*colour)[4]; /* of the squares */
-} picture;
-
-/** Place -1 .. 1 of the part 0 .. 1 of a grid square; squares at the right and lower rim may lie partly beyond the
- *  picture. */
-static double place_x(const picture *p, int32_t x, double part)
-{
-    return 2 * (x + part) * p->coarse / p->options->width - 1;
-}
-
-static double place_y(const picture *p, int32_t y, double part)
-{
-    return 1 - 2 * (y + part) * p->coarse / p->options->height;
-}
-
 /** The square of PACKET_EDGE^2 grid squares from (x0, y0). */
-static void look_packet(const picture *p, int32_t x0, int32_t y0)
+static void look_packet(const swarf_canvas *c, int32_t x0, int32_t y0)
 {
     double place[2][SWARF_PACKET];
     size_t at[SWARF_PACKET];
     swarf_sight seen[SWARF_PACKET];
     unsigned count = 0;
-    for (int32_t y = y0; y < y0 + PACKET_EDGE && y < p->height; y++)
-        for (int32_t x = x0; x < x0 + PACKET_EDGE && x < p->width; x++, count++) {
-            place[0][count] = place_x(p, x, 0.5);
-            place[1][count] = place_y(p, y, 0.5);
-            at[count] = (size_t)y * (size_t)p->width + (size_t)x;
+    for (int32_t y = y0; y < y0 + PACKET_EDGE && y < c->height; y++)
+        for (int32_t x = x0; x < x0 + PACKET_EDGE && x < c->width; x++, count++) {
+            place[0][count] = swarf_canvas_x(c, x, 0.5);
+            place[1][count] = swarf_canvas_y(c, y, 0.5);
+            at[count] = swarf_canvas_at(c, x, y);
         }
     for (unsigned idle = count; idle < SWARF_PACKET; idle++) place[0][idle] = place[1][idle] = 0;
-    swarf_look_through(&p->look, place[0], place[1], count, seen);
-    for (unsigned ray = 0; ray < count; ray++) p->middle[at[ray]] = seen[ray];
+    swarf_look_through(&c->look, place[0], place[1], count, seen);
+    for (unsigned ray = 0; ray < count; ray++) c->middle[at[ray]] = seen[ray];
 }
 
-static int32_t tiles_across(const picture *p)
+static int32_t tiles(int32_t length)
 {
-    return (p->width + TILE - 1) / TILE;
+    return (length + SWARF_TILE - 1) / SWARF_TILE;
 }
 
 static swarf_status look_tile(void *context, size_t index)
 {
-    const picture *p = context;
-    const int32_t x0 = (int32_t)index % tiles_across(p) * TILE, y0 = (int32_t)index / tiles_across(p) * TILE;
-    for (int32_t y = y0; y < y0 + TILE && y < p->height; y += PACKET_EDGE)
-        for (int32_t x = x0; x < x0 + TILE && x < p->width; x += PACKET_EDGE) look_packet(p, x, y);
+    const swarf_canvas *c = context;
+    const int32_t across = tiles(c->width);
+    const int32_t x0 = (int32_t)index % across * SWARF_TILE, y0 = (int32_t)index / across * SWARF_TILE;
+    for (int32_t y = y0; y < y0 + SWARF_TILE && y < c->height; y += PACKET_EDGE)
+        for (int32_t x = x0; x < x0 + SWARF_TILE && x < c->width; x += PACKET_EDGE) look_packet(c, x, y);
     return SWARF_OK;
 }
 
-static void point_of(const picture *p, int32_t x, int32_t y, double out[3])
-{
-    const double place[2] = {place_x(p, x, 0.5), place_y(p, y, 0.5)};
-    double direction[3];
-    swarf_look_ray(&p->look, place, out, direction);
-    const double distance = p->middle[(size_t)y * (size_t)p->width + (size_t)x].distance;
-    for (int axis = 0; axis < 3; axis++) out[axis] += distance * direction[axis];
-}
+/** The parts of the progress by what they cost. */
+static const double looked = 0.3, lit = 0.6;
 
-static int is_same_face(const picture *p, int32_t x0, int32_t y0, int32_t x1, int32_t y1)
+static swarf_status draw(swarf_canvas *c, const swarf_progress *progress)
 {
-    const swarf_sight *a = &p->middle[(size_t)y0 * (size_t)p->width + (size_t)x0];
-    const swarf_sight *b = &p->middle[(size_t)y1 * (size_t)p->width + (size_t)x1];
-    if (a->seen != b->seen) return 0;
-    if (a->seen == SWARF_SEEN_NOTHING) return 1;
-    float cosine = 0;
-    for (int axis = 0; axis < 3; axis++) cosine += a->normal[axis] * b->normal[axis];
-    if (!(cosine > same_face_cosine)) return 0;
-    double from[3], to[3], off_a = 0, off_b = 0, square = 0;
-    point_of(p, x0, y0, from);
-    point_of(p, x1, y1, to);
-    for (int axis = 0; axis < 3; axis++) {
-        const double step = to[axis] - from[axis];
-        off_a += step * a->normal[axis];
-        off_b += step * b->normal[axis];
-        square += step * step;
-    }
-    const double most = same_face_slope * same_face_slope * square;
-    return off_a * off_a <= most && off_b * off_b <= most;
-}
-
-static int is_rough(const picture *p, int32_t x0, int32_t y0)
-{
-    for (int32_t y = y0 - 1; y <= y0 + 1; y++)
-        for (int32_t x = x0 - 1; x <= x0 + 1; x++)
-            if (x >= 0 && y >= 0 && x < p->width && y < p->height && !is_same_face(p, x0, y0, x, y)) return 1;
-    return 0;
-}
-
-/** Shade the middles of a row, and count the rough squares in it. */
-static swarf_status shade_row(void *context, size_t row)
-{
-    const picture *p = context;
-    const double height = 0.5 + 0.5 * place_y(p, (int32_t)row, 0.5);
-    size_t rough = 0;
-    for (int32_t x = 0; x < p->width; x++) {
-        const size_t at = row * (size_t)p->width + (size_t)x;
-        swarf_shade(&p->shading, &p->middle[at], height, p->colour[at]);
-        if (p->options->samples == 1 || !is_rough(p, x, (int32_t)row)) continue;
-        p->colour[at][3] = -1; /* until its samples are there */
-        rough++;
-    }
-    p->rough_before[row + 1] = rough;
-    return SWARF_OK;
-}
-
-static swarf_status list_row(void *context, size_t row)
-{
-    const picture *p = context;
-    size_t number = p->rough_before[row];
-    for (size_t at = row * (size_t)p->width; at < (row + 1) * (size_t)p->width; at++)
-        if (p->colour[at][3] < 0) p->rough[number++] = at;
-    return SWARF_OK;
-}
-
-static swarf_status sample_some(void *context, size_t index)
-{
-    const picture *p = context;
-    const int32_t n = p->options->samples;
-    for (size_t number = index * PIECE; number < (index + 1) * PIECE && number < p->rough_count; number++) {
-        const size_t at = p->rough[number];
-        const int32_t x = (int32_t)(at % (size_t)p->width), y = (int32_t)(at / (size_t)p->width);
-        double place[2][SWARF_PACKET] = {{0}};
-        swarf_sight seen[SWARF_PACKET];
-        float *sum = p->colour[at];
-        for (int32_t sub = 0; sub < n * n; sub++) {
-            place[0][sub] = place_x(p, x, (sub % n + 0.5) / n);
-            place[1][sub] = place_y(p, y, (sub / n + 0.5) / n);
-        }
-        swarf_look_through(&p->look, place[0], place[1], (unsigned)(n * n), seen);
-        memset(sum, 0, sizeof *p->colour);
-        for (int32_t sub = 0; sub < n * n; sub++) {
-            float one[4];
-            swarf_shade(&p->shading, &seen[sub], 0.5 + 0.5 * place[1][sub], one);
-            for (int channel = 0; channel < 4; channel++) sum[channel] += one[channel] / (float)(n * n);
-        }
-    }
-    return SWARF_OK;
-}
-
-/** The parts of `progress` by what they cost. */
-static const double looked = 0.5, shaded = 0.6;
-
-static swarf_status draw(picture *p, const swarf_progress *progress)
-{
-    const size_t rows = (size_t)p->height;
-    SWARF_TRY(
-        swarf_parallel_for((size_t)tiles_across(p) * ((rows + TILE - 1) / TILE), look_tile, p, progress, 0, looked));
-    SWARF_TRY(swarf_parallel_for(rows, shade_row, p, progress, looked, shaded));
-    for (size_t row = 0; row < rows; row++) p->rough_before[row + 1] += p->rough_before[row];
-    p->rough_count = p->rough_before[rows];
-    if (p->rough_count) {
-        p->rough = malloc(p->rough_count * sizeof *p->rough);
-        if (!p->rough) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
-        SWARF_TRY(swarf_parallel_for(rows, list_row, p, NULL, 0, 1));
-        SWARF_TRY(swarf_parallel_for((p->rough_count + PIECE - 1) / PIECE, sample_some, p, progress, shaded, 1));
-    }
-    return SWARF_OK;
+    const size_t count = (size_t)tiles(c->width) * (size_t)tiles(c->height);
+    SWARF_TRY(swarf_parallel_for(count, look_tile, c, progress, 0, looked));
+    SWARF_TRY(swarf_canvas_light(c, progress, looked, lit));
+    SWARF_TRY(swarf_canvas_shade(c, progress, lit, 1));
+    return swarf_canvas_lines(c);
 }
 
 typedef struct output {
-    const picture *picture;
+    const swarf_canvas *canvas;
     const swarf_picture_buffers *to;
 } output;
 
 /** Colour of a pixel between the middles of coarse squares. */
-static void blend(const picture *p, int32_t x, int32_t y, float out[4])
+static void blend(const swarf_canvas *c, int32_t x, int32_t y, float out[4])
 {
-    const double u = fmax((x + 0.5) / p->coarse - 0.5, 0), v = fmax((y + 0.5) / p->coarse - 0.5, 0);
+    const double u = fmax((x + 0.5) / c->coarse - 0.5, 0), v = fmax((y + 0.5) / c->coarse - 0.5, 0);
     const int32_t x0 = (int32_t)u, y0 = (int32_t)v;
-    const int32_t x1 = x0 + 1 < p->width ? x0 + 1 : x0, y1 = y0 + 1 < p->height ? y0 + 1 : y0;
+    const int32_t x1 = x0 + 1 < c->width ? x0 + 1 : x0, y1 = y0 + 1 < c->height ? y0 + 1 : y0;
     const float fx = (float)(u - x0), fy = (float)(v - y0);
-    const float *c00 = p->colour[(size_t)y0 * (size_t)p->width + (size_t)x0];
-    const float *c10 = p->colour[(size_t)y0 * (size_t)p->width + (size_t)x1];
-    const float *c01 = p->colour[(size_t)y1 * (size_t)p->width + (size_t)x0];
-    const float *c11 = p->colour[(size_t)y1 * (size_t)p->width + (size_t)x1];
+    const float *c00 = c->colour[swarf_canvas_at(c, x0, y0)];
+    const float *c10 = c->colour[swarf_canvas_at(c, x1, y0)];
+    const float *c01 = c->colour[swarf_canvas_at(c, x0, y1)];
+    const float *c11 = c->colour[swarf_canvas_at(c, x1, y1)];
     for (int channel = 0; channel < 4; channel++)
         out[channel] = (1 - fy) * ((1 - fx) * c00[channel] + fx * c10[channel]) +
                        fy * ((1 - fx) * c01[channel] + fx * c11[channel]);
 }
 
+/** Point of a square in full precision. */
+static void point_of(const swarf_canvas *c, int32_t x, int32_t y, double out[3])
+{
+    const swarf_sight *sight = &c->middle[swarf_canvas_at(c, x, y)];
+    const double place[2] = {swarf_canvas_x(c, x, 0.5), swarf_canvas_y(c, y, 0.5)};
+    double direction[3];
+    swarf_look_ray(&c->look, place, out, direction);
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = sight->seen == SWARF_SEEN_NOTHING ? NAN : out[axis] + sight->distance * direction[axis];
+}
+
+static double depth_of(const swarf_look *look, const double point[3])
+{
+    double arm[3];
+    for (int axis = 0; axis < 3; axis++) arm[axis] = point[axis] - look->frame.eye[axis];
+    return vector_dot(arm, look->frame.forward);
+}
+
 static swarf_status put_row(void *context, size_t row)
 {
     const output *o = context;
-    const picture *p = o->picture;
-    const int32_t width = p->options->width, grid_y = (int32_t)row / p->coarse;
-    for (int32_t x = 0; x < width; x++) {
-        const size_t at = row * (size_t)width + (size_t)x;
-        const int32_t grid_x = x / p->coarse;
-        const size_t square = (size_t)grid_y * (size_t)p->width + (size_t)grid_x;
-        const swarf_sight *sight = &p->middle[square];
+    const swarf_canvas *c = o->canvas;
+    const int32_t width = c->options->width, y = (int32_t)row / c->coarse;
+    for (int32_t i = 0; i < width; i++) {
+        const int32_t x = i / c->coarse;
+        const size_t at = row * (size_t)width + (size_t)i, square = swarf_canvas_at(c, x, y);
+        const swarf_sight *sight = &c->middle[square];
         if (o->to->rgba) {
             float colour[4];
-            memcpy(colour, p->colour[square], sizeof colour);
-            if (p->coarse > 1) blend(p, x, (int32_t)row, colour);
+            memcpy(colour, c->colour[square], sizeof colour);
+            if (c->coarse > 1) blend(c, i, (int32_t)row, colour);
             swarf_shade_resolve(colour, 1, o->to->rgba + 4 * at);
         }
         if (o->to->seen) o->to->seen[at] = (uint8_t)sight->seen;
         if (o->to->move) o->to->move[at] = sight->move;
         if (o->to->normal) memcpy(o->to->normal + 3 * at, sight->normal, sizeof sight->normal);
         if (!o->to->depth && !o->to->position) continue;
-        double point[3] = {NAN, NAN, NAN}, arm[3];
-        if (sight->seen != SWARF_SEEN_NOTHING) point_of(p, grid_x, grid_y, point);
-        for (int axis = 0; axis < 3; axis++) arm[axis] = point[axis] - p->look.frame.eye[axis];
+        double point[3];
+        point_of(c, x, y, point);
         if (o->to->position) memcpy(o->to->position + 3 * at, point, sizeof point);
         if (o->to->depth)
-            o->to->depth[at] =
-                sight->seen == SWARF_SEEN_NOTHING ? INFINITY : (float)vector_dot(arm, p->look.frame.forward);
+            o->to->depth[at] = sight->seen == SWARF_SEEN_NOTHING ? INFINITY : (float)depth_of(&c->look, point);
     }
     return SWARF_OK;
 }
@@ -257,9 +138,12 @@ swarf_picture_options swarf_picture_options_default(void)
         .height = 960,
         .samples = 3,
         .coarse = 1,
-        .colour = {0.62f, 0.62f, 0.64f},
-        .background = {0.80f, 0.82f, 0.85f, 1},
-        .background_top = {0.30f, 0.36f, 0.44f, 1},
+        .edges = 1,
+        .occlusion = 1,
+        .colour = {0.63f, 0.62f, 0.62f},
+        .background = {0.86f, 0.88f, 0.90f, 1},
+        .background_top = {0.42f, 0.49f, 0.58f, 1},
+        .value_range = 0.1,
     };
 }
 
@@ -273,6 +157,8 @@ static swarf_status check_options(const swarf_picture_options *o)
     SWARF_REQUIRE(o->coarse >= 1 && o->coarse <= COARSE_MAX, "picture: %d pixels per ray is not in 1 .. %d",
                   (int)o->coarse, (int)COARSE_MAX);
     SWARF_REQUIRE(isfinite(o->budget_ms) && o->budget_ms >= 0, "picture: a budget of %g ms", o->budget_ms);
+    SWARF_REQUIRE(isfinite(o->moves_done) && isfinite(o->value_range) && isfinite(o->axes_mm),
+                  "picture: moves done, range of values or length of axes is not finite");
     for (int channel = 0; channel < 4; channel++) {
         const float colour = channel < 3 ? o->colour[channel] : 0;
         const float low = o->background[channel], high = o->background_top[channel];
@@ -301,25 +187,24 @@ static int32_t choose_coarse(const swarf_scene *scene, const swarf_picture_optio
 }
 
 /** With the scene entered. */
-static swarf_status render(swarf_scene *scene, const swarf_camera *camera, picture *p, const swarf_progress *progress,
-                           const swarf_picture_buffers *out)
+static swarf_status render(swarf_scene *scene, const swarf_camera *camera, swarf_canvas *c,
+                           const swarf_progress *progress, const swarf_picture_buffers *out)
 {
-    const swarf_picture_options *options = p->options;
+    const swarf_picture_options *options = c->options;
     const double started = now_ms();
-    SWARF_TRY(swarf_look_make(scene, camera, (double)options->width / options->height, &p->look));
-    swarf_shading_make(&p->look, options, &p->shading);
-    p->coarse = choose_coarse(scene, options);
-    p->width = (options->width + p->coarse - 1) / p->coarse;
-    p->height = (options->height + p->coarse - 1) / p->coarse;
-    const size_t squares = (size_t)p->width * (size_t)p->height;
-    p->middle = malloc(squares * sizeof *p->middle);
-    p->colour = malloc(squares * sizeof *p->colour);
-    p->rough_before = calloc((size_t)p->height + 1, sizeof *p->rough_before);
-    if (!p->middle || !p->colour || !p->rough_before)
+    c->coarse = choose_coarse(scene, options);
+    c->width = (options->width + c->coarse - 1) / c->coarse;
+    c->height = (options->height + c->coarse - 1) / c->coarse;
+    SWARF_TRY(swarf_look_begin(scene, camera, options, c->height, &c->look));
+    SWARF_TRY(swarf_shading_make(&c->look, options, &c->shading));
+    const size_t squares = (size_t)c->width * (size_t)c->height;
+    c->middle = malloc(squares * sizeof *c->middle);
+    c->colour = malloc(squares * sizeof *c->colour);
+    if (!c->middle || !c->colour)
         return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for %d x %d pixels", (int)options->width,
                           (int)options->height);
-    SWARF_TRY(draw(p, progress));
-    output o = {p, out};
+    SWARF_TRY(draw(c, progress));
+    output o = {c, out};
     SWARF_TRY(swarf_parallel_for((size_t)options->height, put_row, &o, NULL, 0, 1));
     swarf_scene_note_ray_ms(scene, (now_ms() - started) / (double)squares);
     return SWARF_OK;
@@ -331,14 +216,15 @@ swarf_status swarf_scene_render(swarf_scene *scene, const swarf_camera *camera, 
     SWARF_REQUIRE(scene && camera && options && out, "picture: scene, camera, options or output missing");
     SWARF_REQUIRE(out->size == sizeof *out, "picture: buffers of another version");
     SWARF_TRY(check_options(options));
-    picture p = {.options = options};
+    swarf_canvas c = {.options = options};
     SWARF_TRY(swarf_scene_enter(scene));
-    const swarf_status status = render(scene, camera, &p, progress, out);
+    const swarf_status status = render(scene, camera, &c, progress, out);
     swarf_scene_leave(scene);
-    free(p.middle);
-    free(p.colour);
-    free(p.rough_before);
-    free(p.rough);
+    swarf_look_end(&c.look);
+    free(c.middle);
+    free(c.colour);
+    free(c.sky);
+    free(c.sun);
     return status;
 }
 
@@ -350,31 +236,32 @@ swarf_status swarf_scene_picture(swarf_scene *scene, const swarf_camera *camera,
     return swarf_scene_render(scene, camera, options, progress, &out);
 }
 
-swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, double aspect, double x, double y,
-                              swarf_pick *out)
+swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, const swarf_picture_options *options,
+                              double x, double y, swarf_pick *out)
 {
-    SWARF_REQUIRE(scene && camera && out, "pick: scene, camera or output missing");
+    SWARF_REQUIRE(scene && camera && options && out, "pick: scene, camera, options or output missing");
     SWARF_REQUIRE(isfinite(x) && isfinite(y), "pick: the place in the picture is not finite");
+    SWARF_TRY(check_options(options));
     SWARF_TRY(swarf_scene_enter(scene));
-    swarf_look look;
+    swarf_look look = {0};
     swarf_sight sight;
     const double place[2] = {x, y}, xs[SWARF_PACKET] = {x}, ys[SWARF_PACKET] = {y};
-    swarf_status status = swarf_look_make(scene, camera, aspect, &look);
+    const swarf_status status = swarf_look_begin(scene, camera, options, options->height, &look);
     if (status == SWARF_OK) swarf_look_through(&look, xs, ys, 1, &sight);
+    swarf_look_end(&look);
     swarf_scene_leave(scene);
     SWARF_TRY(status);
     swarf_pick pick = {.seen = sight.seen, .move = -1, .depth = NAN};
     for (int axis = 0; axis < 3; axis++) pick.point[axis] = pick.normal[axis] = NAN;
     if (sight.seen != SWARF_SEEN_NOTHING) {
-        double direction[3], arm[3];
+        double direction[3];
         swarf_look_ray(&look, place, pick.point, direction);
         for (int axis = 0; axis < 3; axis++) {
             pick.point[axis] += sight.distance * direction[axis];
             pick.normal[axis] = sight.normal[axis];
-            arm[axis] = pick.point[axis] - look.frame.eye[axis];
         }
         pick.move = sight.move;
-        pick.depth = vector_dot(arm, look.frame.forward);
+        pick.depth = depth_of(&look, pick.point);
     }
     *out = pick;
     return SWARF_OK;

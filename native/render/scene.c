@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/status.h"
 #include "render/cube.h"
+#include "render/embree_fixtures.h"
 #include "render/embree_scene.h"
 #include "stock/stock.h"
 
@@ -36,6 +37,7 @@ struct swarf_scene {
     const swarf_cube **list;
     size_t list_count;
     swarf_accel *accel;
+    swarf_fixtures *fixtures; /* NULL: none */
     swarf_ray_space space;
     double ray_ms; /* that a ray of the last picture took, with all that belongs to it; 0: no picture yet */
     swarf_cube_tiles tiles;
@@ -209,6 +211,7 @@ void swarf_scene_destroy(swarf_scene *scene)
 {
     if (!scene) return;
     swarf_accel_destroy(scene->accel);
+    swarf_fixtures_destroy(scene->fixtures);
     free_grid(scene);
     free(scene->list);
     free(scene);
@@ -235,6 +238,23 @@ void swarf_scene_box(const swarf_scene *scene, swarf_box *out)
         out->hi[axis] =
             scene->list_count ? scene->layout.origin[axis] + scene->layout.voxel * scene->space.hi[axis] : 0;
     }
+}
+
+swarf_status swarf_scene_set_fixtures(swarf_scene *scene, const swarf_triangles *triangles, size_t count)
+{
+    SWARF_REQUIRE(scene && (triangles || count == 0), "fixtures: scene or triangles missing");
+    swarf_fixtures *fixtures = NULL;
+    size_t filled = 0;
+    for (size_t i = 0; i < count; i++) filled += triangles[i].triangle_count > 0;
+    if (filled) SWARF_TRY(swarf_fixtures_create(triangles, count, &fixtures));
+    swarf_fixtures_destroy(scene->fixtures);
+    scene->fixtures = fixtures;
+    return SWARF_OK;
+}
+
+const swarf_fixtures *swarf_scene_fixtures(const swarf_scene *scene)
+{
+    return scene->fixtures;
 }
 
 double swarf_scene_voxel(const swarf_scene *scene)

@@ -18,6 +18,9 @@ void swarf_scene_leave(swarf_scene *scene);
 /** Box of the surface in mm, empty when there is none. */
 void swarf_scene_box(const swarf_scene *scene, swarf_box *out);
 
+/** NULL: none. */
+const struct swarf_fixtures *swarf_scene_fixtures(const swarf_scene *scene);
+
 /** Edge of a voxel, mm. */
 double swarf_scene_voxel(const swarf_scene *scene);
 

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "render/shade.h"
 
+#include "base/status.h"
+#include "render/vector.h"
+
 #include <math.h>
 #include <pthread.h>
-
-/* A. Gooch, B. Gooch, P. Shirley, E. Cohen: A Non-Photorealistic Lighting Model for Automatic Technical Illustration,
- * SIGGRAPH 1998, section 4.2: blue and yellow shifts, and how much of the object's colour each side shows. */
-static const float gooch_blue = 0.4f, gooch_yellow = 0.4f, gooch_alpha = 0.2f, gooch_beta = 0.6f;
-/* Towards the light in the camera's right, up and backward: over the left shoulder. */
-static const double light_camera[3] = {-0.5, 0.7, 0.6};
+#include <string.h>
 
 /* IEC 61966-2-1 in eight bits, by linear value. At black, where it is steepest, an entry is a quarter of a step. */
 enum { SRGB_SIZE = 1 << 14 };
@@ -23,17 +21,65 @@ static void fill_srgb(void)
     }
 }
 
-void swarf_shading_make(const swarf_look *look, const swarf_picture_options *options, swarf_shading *out)
+/* A. Gooch, B. Gooch, P. Shirley, E. Cohen: A Non-Photorealistic Lighting Model for Automatic Technical Illustration,
+ * SIGGRAPH 1998, section 4.2: blue and yellow shifts, and how much of the object's colour each side shows. Gentler
+ * shifts and more of the colour than theirs: colours mean something here. */
+static const float gooch_blue = 0.14f, gooch_yellow = 0.10f, gooch_alpha = 0.22f, gooch_beta = 0.86f;
+/* Towards the light in the camera's right, up and backward: from the upper left. Faces towards the viewer, upwards and
+ * to the side get three different tones. */
+static const double light_camera[3] = {-0.36, 0.76, 0.46};
+/* How dark a closed pocket gets, and what is left of the light in a shadow. */
+static const float sky_least = 0.12f, sun_least = 0.35f;
+/* Strength and sharpness of the gloss on steel. */
+static const float gloss = 0.35f, gloss_power = 24;
+
+/* Linear RGB. */
+static const float flutes_colour[3] = {0.70f, 0.56f, 0.24f};
+static const float shank_colour[3] = {0.42f, 0.44f, 0.47f};
+static const float holder_colour[3] = {0.13f, 0.14f, 0.17f};
+static const float fixture_colour[3] = {0.16f, 0.30f, 0.27f};
+static const float section_colour[3] = {0.62f, 0.17f, 0.08f};
+static const float selected_colour[3] = {1.0f, 0.36f, 0.02f};
+/* Lines of a hatch: one in so many squares of the picture. */
+static const double hatch_squares = 9;
+
+void swarf_picture_colour(int32_t number, float out[3])
 {
-    const swarf_camera_frame *frame = &look->frame;
-    double length = 0;
+    /* Hues by the golden ratio: any few in a row lie far apart. */
+    const double turn = 0.61803398875 * number + 0.08, hue = 6 * (turn - floor(turn));
+    static const double phase[3] = {3, 5, 1};
+    for (int channel = 0; channel < 3; channel++) {
+        const double k = fmod(phase[channel] + 6 - hue, 6);
+        const double value = 0.85 - 0.68 * fmax(0, fmin(fmin(k, 4 - k), 1));
+        out[channel] = (float)pow(value, 2.2);
+    }
+}
+
+swarf_status swarf_shading_make(const swarf_look *look, const swarf_picture_options *options, swarf_shading *out)
+{
+    swarf_shading shading = {.look = look, .options = options, .feed_lo = INFINITY, .feed_hi = 0};
+    double light[3];
     pthread_once(&srgb_once, fill_srgb);
-    for (int axis = 0; axis < 3; axis++) length += light_camera[axis] * light_camera[axis];
-    out->options = options;
+    SWARF_REQUIRE(options->colouring >= 0 && options->colouring < SWARF_COLOURING_COUNT, "picture: no colouring %d",
+                  (int)options->colouring);
+    if (options->colouring == SWARF_COLOURING_DEVIATION)
+        SWARF_REQUIRE(options->values && options->value_range > 0, "picture: values or their range missing");
+    else if (options->colouring != SWARF_COLOURING_MATERIAL)
+        SWARF_REQUIRE(options->program, "picture: the colouring needs the program");
     for (int axis = 0; axis < 3; axis++)
-        out->light[axis] = (float)((light_camera[0] * frame->right[axis] + light_camera[1] * frame->up[axis] -
-                                    light_camera[2] * frame->forward[axis]) /
-                                   sqrt(length));
+        light[axis] = light_camera[0] * look->frame.right[axis] + light_camera[1] * look->frame.up[axis] -
+                      light_camera[2] * look->frame.forward[axis];
+    (void)vector_normalise(light);
+    for (int axis = 0; axis < 3; axis++) shading.light[axis] = (float)light[axis];
+    const size_t count = options->program ? swarf_program_move_count(options->program) : 0;
+    const swarf_move *moves = count ? swarf_program_moves(options->program) : NULL;
+    for (size_t i = 0; i < count; i++) {
+        if (swarf_move_get_kind(&moves[i]) != SWARF_MOVE_FEED || !(moves[i].feed_mm_min > 0)) continue;
+        if (moves[i].feed_mm_min < shading.feed_lo) shading.feed_lo = moves[i].feed_mm_min;
+        if (moves[i].feed_mm_min > shading.feed_hi) shading.feed_hi = moves[i].feed_mm_min;
+    }
+    *out = shading;
+    return SWARF_OK;
 }
 
 static void backdrop(const swarf_picture_options *options, float height, float out[4])
@@ -44,20 +90,111 @@ static void backdrop(const swarf_picture_options *options, float height, float o
         out[channel] = out[3] * (bottom[channel] + height * (top[channel] - bottom[channel]));
 }
 
-void swarf_shade(const swarf_shading *shading, const swarf_sight *sight, double height, float out[4])
+/** Blue over green and yellow to red for x = 0 .. 1. */
+static void ramp(float x, float out[3])
 {
-    if (sight->seen == SWARF_SEEN_NOTHING) {
-        backdrop(shading->options, (float)height, out);
-        return;
+    static const float stops[5][3] = {{0.05f, 0.12f, 0.62f},
+                                      {0.02f, 0.45f, 0.60f},
+                                      {0.10f, 0.55f, 0.16f},
+                                      {0.80f, 0.62f, 0.06f},
+                                      {0.70f, 0.08f, 0.03f}};
+    const float place = fminf(fmaxf(x, 0), 1) * 4;
+    const int low = place < 3 ? (int)place : 3;
+    for (int channel = 0; channel < 3; channel++)
+        out[channel] = stops[low][channel] + (place - (float)low) * (stops[low + 1][channel] - stops[low][channel]);
+}
+
+static void blend(float colour[3], const float other[3], float part)
+{
+    for (int channel = 0; channel < 3; channel++) colour[channel] += part * (other[channel] - colour[channel]);
+}
+
+static void deviation_colour(float value, float range, float out[3])
+{
+    static const float within[3] = {0.12f, 0.50f, 0.16f};
+    static const float excess[3] = {0.05f, 0.12f, 0.75f}, gouge[3] = {0.75f, 0.05f, 0.03f};
+    static const float most[2][3] = {{0.02f, 0.45f, 0.60f}, {0.80f, 0.62f, 0.06f}};
+    const float part = fminf(fabsf(value) / range, 1);
+    memcpy(out, within, sizeof within);
+    if (part > 0.1f) {
+        memcpy(out, most[value < 0], sizeof within);
+        blend(out, value < 0 ? gouge : excess, (part - 0.1f) / 0.9f);
     }
-    const float *base = shading->options->colour;
-    float cosine = 0;
-    for (int axis = 0; axis < 3; axis++) cosine += shading->light[axis] * sight->normal[axis];
-    const float warmth = 0.5f + 0.5f * cosine;
+}
+
+/** What the colouring makes of the stock's surface. */
+static void surface_colour(const swarf_shading *s, const swarf_sight *sight, float value, float out[3])
+{
+    const swarf_picture_options *o = s->options;
+    memcpy(out, o->colour, sizeof o->colour);
+    if (o->colouring == SWARF_COLOURING_DEVIATION && !isnan(value)) deviation_colour(value, (float)o->value_range, out);
+    if (sight->move < 0 || !o->program || (size_t)sight->move >= swarf_program_move_count(o->program)) return;
+    const swarf_move *move = &swarf_program_moves(o->program)[sight->move];
+    const swarf_section *section = &swarf_program_sections(o->program)[swarf_move_get_section(move)];
+    switch (o->colouring) {
+    case SWARF_COLOURING_OPERATION: swarf_picture_colour(section->operation, out); break;
+    case SWARF_COLOURING_TOOL: swarf_picture_colour(section->tool, out); break;
+    case SWARF_COLOURING_AGE: ramp((float)(sight->move / fmax(o->moves_done, 1)), out); break;
+    case SWARF_COLOURING_FEED:
+        ramp(s->feed_hi > s->feed_lo ? (move->feed_mm_min - s->feed_lo) / (s->feed_hi - s->feed_lo) : 0, out);
+        break;
+    default: break;
+    }
+    if (o->selected_line && move->line == o->selected_line) blend(out, selected_colour, 0.8f);
+}
+
+/** Slanting lines as wide as the gaps between them look best; these are half that, on the colour of a cut. */
+static void hatch(const swarf_shading *s, const swarf_sight *sight, float out[3])
+{
+    static const float between[3] = {0.78f, 0.42f, 0.26f};
+    const swarf_camera_frame *frame = &s->look->frame;
+    double across = 0;
+    for (int axis = 0; axis < 3; axis++) across += sight->point[axis] * (frame->right[axis] + frame->up[axis]);
+    const double lines = across / (swarf_look_footprint(s->look, sight) * hatch_squares * 1.41421356);
+    const double off = fabs(lines - floor(lines) - 0.5) * hatch_squares; /* squares from the line's middle */
+    memcpy(out, between, sizeof between);
+    blend(out, section_colour, (float)fmin(fmax(1.6 - off, 0), 1));
+}
+
+void swarf_shade(const swarf_shading *shading, const swarf_sight *sight, double y, float sky, float sun, float value,
+                 float out[4])
+{
+    float base[3], glossy = 0;
+    switch (sight->seen) {
+    case SWARF_SEEN_NOTHING: backdrop(shading->options, (float)(0.5 + 0.5 * y), out); return;
+    case SWARF_SEEN_SECTION:
+        hatch(shading, sight, out);
+        out[3] = 1;
+        return;
+    case SWARF_SEEN_FLUTES:
+        memcpy(base, flutes_colour, sizeof base);
+        glossy = gloss;
+        break;
+    case SWARF_SEEN_SHANK:
+        memcpy(base, shank_colour, sizeof base);
+        glossy = gloss;
+        break;
+    case SWARF_SEEN_HOLDER:
+        memcpy(base, holder_colour, sizeof base);
+        glossy = gloss;
+        break;
+    case SWARF_SEEN_FIXTURE: memcpy(base, fixture_colour, sizeof base); break;
+    default: surface_colour(shading, sight, value, base); break;
+    }
+    const float *n = sight->normal, *l = shading->light;
+    const float cosine = l[0] * n[0] + l[1] * n[1] + l[2] * n[2];
+    const float warmth = (0.5f + 0.5f * cosine) * (sun_least + (1 - sun_least) * sun);
+    float shine = 0;
+    if (glossy > 0) { /* the light's mirror image, seen along the view */
+        float along = 0;
+        for (int axis = 0; axis < 3; axis++)
+            along -= (2 * cosine * n[axis] - l[axis]) * (float)shading->look->frame.forward[axis];
+        if (along > 0) shine = glossy * powf(along, gloss_power);
+    }
     for (int channel = 0; channel < 3; channel++) {
-        const float cool = gooch_alpha * base[channel] + (channel == 2 ? gooch_blue : 0);
+        const float cool = gooch_alpha * base[channel] + (channel == 2 ? gooch_blue * base[channel] : 0);
         const float warm = gooch_beta * base[channel] + (channel == 2 ? 0 : gooch_yellow);
-        out[channel] = warmth * warm + (1 - warmth) * cool;
+        out[channel] = (warmth * warm + (1 - warmth) * cool) * (sky_least + (1 - sky_least) * sky) + shine;
     }
     out[3] = 1;
 }

@@ -77,11 +77,11 @@ def test_buffers_agree_with_the_camera_and_with_picks(stock):
     assert picture.position[middle, 2] == pytest.approx(0, abs=1e-6)
     assert picture.normal[middle, 2] == pytest.approx(1)
     place = ((45 + 0.5) / 45 - 1, 1 - (30 + 0.5) / 30)
-    pick = scene.pick(camera, *place, 1.5)
+    pick = scene.pick(camera, *place, 90, 60)
     assert pick.seen == "stock" and pick.point == pytest.approx([picture.position[middle, i] for i in range(3)])
     assert pick.depth == pytest.approx(picture.depth[30, 45])
     assert camera.project(pick.point, 1.5)[:2] == pytest.approx(place, abs=1e-9)
-    assert scene.pick(camera, -1, 1, 1.5) is None
+    assert scene.pick(camera, -1, 1, 90, 60) is None
     assert scene.render(camera, 9, 6, buffers=("seen",)).rgba is None
 
 

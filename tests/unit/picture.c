@@ -39,12 +39,13 @@ static void check_face(swarf_scene *scene, const swarf_box *box)
     CHECK_NEAR(covered * pixel * pixel / (40 * 30), 1, 2e-3);
     CHECK(rgba[3] == 0 && rgba[bytes - 1] == 0);
 
-    /* The face looks at the camera: its light is the backward part of the unit vector to (-0.5, 0.7, 0.6). */
-    const double warmth = 0.5 + 0.5 * 0.6 / sqrt(0.25 + 0.49 + 0.36);
+    /* The face looks at the camera: its light is the backward part of the unit vector to (-0.36, 0.76, 0.46), and
+     * nothing hides the sky from it. */
+    const double warmth = 0.5 + 0.5 * 0.46 / sqrt(0.36 * 0.36 + 0.76 * 0.76 + 0.46 * 0.46);
     const uint8_t *middle = rgba + 4 * (75 * 203 + 101);
     for (int channel = 0; channel < 3; channel++) {
         const double base = options.colour[channel];
-        const double warm = 0.6 * base + (channel < 2 ? 0.4 : 0), cool = 0.2 * base + (channel < 2 ? 0 : 0.4);
+        const double warm = 0.86 * base + (channel < 2 ? 0.10 : 0), cool = (0.22 + (channel < 2 ? 0 : 0.14)) * base;
         const double linear = warmth * warm + (1 - warmth) * cool;
         CHECK_NEAR(middle[channel], 255 * (1.055 * pow(linear, 1 / 2.4) - 0.055), 1.0);
     }

@@ -72,6 +72,10 @@ SWARF_API swarf_status swarf_scene_create(swarf_stock *stock, swarf_scene **out)
 SWARF_API void swarf_scene_destroy(swarf_scene *scene);
 SWARF_API swarf_status swarf_scene_update(swarf_scene *scene);
 
+/** Show these bodies beside the stock, in place of those before; count 0: none. The triangles are copied.
+ *  SWARF_ERROR_ARGUMENT for a vertex number out of range or a coordinate that is not finite. */
+SWARF_API swarf_status swarf_scene_set_fixtures(swarf_scene *scene, const swarf_triangles *triangles, size_t count);
+
 /** First hits of `count` rays (origin and direction 3 doubles each, mm) with the stock's surface: distance along the
  *  direction in its units (INFINITY: none) and unit normal (3 floats each; zero without a hit). `normal` may be NULL. A
  *  ray that starts in material meets nothing. SWARF_ERROR_ARGUMENT names the ray with a zero direction or a number that
@@ -83,7 +87,31 @@ SWARF_API swarf_status swarf_scene_cast(swarf_scene *scene, const double *origin
 typedef enum swarf_seen {
     SWARF_SEEN_NOTHING = 0,
     SWARF_SEEN_STOCK,
+    SWARF_SEEN_SECTION, /**< the inside of the stock where a section cuts it */
+    SWARF_SEEN_FLUTES,
+    SWARF_SEEN_SHANK,
+    SWARF_SEEN_HOLDER,
+    SWARF_SEEN_FIXTURE,
+    SWARF_SEEN_COUNT
 } swarf_seen;
+
+/** What the colour of the stock's surface says. All but the material and the deviation need `program`, and moves that
+ *  are known. */
+typedef enum swarf_colouring {
+    SWARF_COLOURING_MATERIAL = 0,
+    SWARF_COLOURING_OPERATION, /**< a colour per operation: swarf_picture_colour() */
+    SWARF_COLOURING_TOOL,      /**< a colour per tool number */
+    SWARF_COLOURING_AGE,       /**< from old to just cut, among the moves before `moves_done` */
+    SWARF_COLOURING_FEED,      /**< from the slowest to the fastest feed */
+    SWARF_COLOURING_DEVIATION, /**< `values`: gouge red, excess blue, within +- value_range / 10 green */
+    SWARF_COLOURING_COUNT
+} swarf_colouring;
+
+/** A plane that takes away what lies on the side its normal points to. */
+typedef struct swarf_cut_plane {
+    double point[3];
+    double normal[3];
+} swarf_cut_plane;
 
 typedef struct swarf_picture_options {
     size_t size;
@@ -91,12 +119,30 @@ typedef struct swarf_picture_options {
     int32_t height;
     int32_t samples;     /**< 1, 2, 3 or 4: n * n rays for pixels where more than one face shows, else one */
     int32_t coarse;      /**< 1 .. 16: one ray for coarse * coarse pixels, while things move */
-    double budget_ms;    /**< > 0: as coarse as needed to be done in about this time, judged by the pictures before;
-                              the picture then depends on the clock. `coarse` is the least. */
+    double budget_ms;    /**< > 0: as coarse as needed to be done in about this time, judged by the pictures before; the
+                              picture then depends on the clock. `coarse` is the least. */
+    int32_t edges;       /**< 1: dark lines where faces meet or one hides the other */
+    int32_t occlusion;   /**< 1: corners and pockets are darker, as under an overcast sky */
+    int32_t shadow;      /**< 1: the light casts shadows */
+    int32_t colouring;   /**< swarf_colouring */
     float colour[3];     /**< linear 0..1 base colour of the material */
     float background[4]; /**< RGBA at the bottom of the picture */
     float background_top[4];
+    const float *values;            /**< width * height deviations (mm, excess > 0) for the colouring; NAN: none */
+    double value_range;             /**< of the colours: -range .. range, mm */
+    const swarf_cut_plane *section; /**< planes that cut stock and fixtures open; cut faces are hatched */
+    size_t section_count;           /**< up to 6 */
+    const swarf_cutter *cutter;     /**< shown at cutter_tip, axis +z; NULL: none */
+    double cutter_tip[3];
+    const swarf_program *program; /**< what colourings and the path are of; NULL: none */
+    double moves_done;            /**< moves and part of a move that have been played */
+    int32_t path;                 /**< 1: the tool's path: rapids and feeds, done and to come */
+    uint32_t selected_line;       /**< surfaces and path of this line stand out; 0: none */
+    const swarf_box *outline;     /**< its edges as lines; NULL: none */
+    double axes_mm;               /**< length of x, y and z at the origin; 0: none */
 } swarf_picture_options;
+/** Linear RGB for a number (operation, tool): neighbours differ well. Any thread. */
+SWARF_API void swarf_picture_colour(int32_t number, float out[3]);
 SWARF_API swarf_picture_options swarf_picture_options_default(void);
 
 /** Where a picture goes: arrays of the caller with width * height entries, rows from the top; NULL where not wanted. */
@@ -104,7 +150,7 @@ typedef struct swarf_picture_buffers {
     size_t size;      /**< sizeof(swarf_picture_buffers) */
     uint8_t *rgba;    /**< 4 each; sRGB, opaque unless the background is not */
     float *depth;     /**< mm along the view from the eye (its plane), INFINITY where nothing is seen */
-    float *normal;    /**< 3 each, unit, towards the viewer's side of the surface; zero where nothing is seen */
+    float *normal;    /**< 3 each, unit, out of the surface; zero where nothing is seen */
     double *position; /**< 3 each, mm; NAN where nothing is seen */
     int32_t *move;    /**< index of the move that made the surface; -1: the stock as it was, or not known */
     uint8_t *seen;    /**< swarf_seen */
@@ -128,9 +174,9 @@ typedef struct swarf_pick {
     double normal[3];
     double depth;
 } swarf_pick;
-/** The thing at place (x, y) of a picture of this aspect. */
-SWARF_API swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, double aspect, double x,
-                                        double y, swarf_pick *out);
+/** The thing at place (x, y) of the picture that swarf_scene_render() would draw; lines are seen through. */
+SWARF_API swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera,
+                                        const swarf_picture_options *options, double x, double y, swarf_pick *out);
 /** Write RGBA pixels as PNG (libpng); written beside and renamed. */
 SWARF_API swarf_status swarf_picture_write(const char *path, const uint8_t *rgba, int32_t width, int32_t height);
 

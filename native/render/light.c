@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Light: how much of the sky each square's surface sees, and whether the light reaches it.
+ *
+ * The sky is looked for from one square of each block of 2x2, with 16 rays over the half space above the surface, more
+ * of them where they count more (cosine weighting). Blocks turn the same pattern by one of 4x4 angles; a square then
+ * takes the mean of the 4x4 blocks around it that lie on its own face, which has each angle once.
+ */
+#include "base/parallel.h"
+#include "base/status.h"
+#include "render/picture.h"
+#include "render/vector.h"
+
+#include <stdlib.h>
+
+enum { BLOCK = 2, PATTERN = 4 };
+
+/* Of the size of what is seen: what lies farther darkens nothing. */
+static const double sky_reach = 0.14;
+/* Voxels by which rays start above the surface: the field's noise is a hundredth of that. */
+static const double lift = 0.3;
+static const double golden_angle = 2.39996322972865332;
+
+typedef struct sky_work {
+    swarf_canvas *canvas;
+    int32_t across, down; /* blocks */
+    float *open;          /* per block, negative: no surface */
+} sky_work;
+
+static int is_solid(const swarf_sight *sight)
+{
+    return sight->seen == SWARF_SEEN_STOCK || sight->seen == SWARF_SEEN_FIXTURE;
+}
+
+static void start_above(const swarf_canvas *c, const swarf_sight *sight, swarf_rays *rays, int ray)
+{
+    const double gap = lift * swarf_scene_voxel(c->look.scene);
+    for (int axis = 0; axis < 3; axis++)
+        rays->origin[axis][ray] = c->look.middle[axis] + sight->point[axis] + gap * sight->normal[axis];
+}
+
+static float look_up(const swarf_canvas *c, const swarf_sight *sight, int pattern)
+{
+    swarf_rays rays;
+    const double n[3] = {sight->normal[0], sight->normal[1], sight->normal[2]}, reach = sky_reach * c->look.size;
+    double u[3] = {fabs(n[0]) < 0.6 ? 1 : 0, fabs(n[0]) < 0.6 ? 0 : 1, 0}, v[3];
+    vector_cross(n, u, v);
+    (void)vector_normalise(v);
+    vector_cross(v, n, u);
+    for (int ray = 0; ray < SWARF_PACKET; ray++) {
+        const double square = (ray + 0.5) / SWARF_PACKET, radius = sqrt(square), up = sqrt(1 - square);
+        const double angle = ray * golden_angle + pattern * (6.28318530717958648 / (PATTERN * PATTERN));
+        const double x = radius * cos(angle), y = radius * sin(angle);
+        for (int axis = 0; axis < 3; axis++) rays.direction[axis][ray] = x * u[axis] + y * v[axis] + up * n[axis];
+        start_above(c, sight, &rays, ray);
+        rays.reach[ray] = reach;
+    }
+    rays.active = (1u << SWARF_PACKET) - 1;
+    const unsigned blocked = swarf_look_blocked(&c->look, &rays);
+    double open = SWARF_PACKET;
+    for (unsigned left = blocked; left; left &= left - 1) {
+        const double part = rays.distance[__builtin_ctz(left)] / reach;
+        open -= part < 1 ? 1 - part : 0;
+    }
+    return (float)(open / SWARF_PACKET);
+}
+
+static swarf_status look_up_row(void *context, size_t row)
+{
+    const sky_work *w = context;
+    const swarf_canvas *c = w->canvas;
+    for (int32_t bx = 0; bx < w->across; bx++) {
+        const swarf_sight *sight = &c->middle[swarf_canvas_at(c, bx * BLOCK, (int32_t)row * BLOCK)];
+        const int pattern = (int)(row % PATTERN) * PATTERN + bx % PATTERN;
+        w->open[row * (size_t)w->across + (size_t)bx] = is_solid(sight) ? look_up(c, sight, pattern) : -1;
+    }
+    return SWARF_OK;
+}
+
+/** How much a block on the way from a square says of it: 0 beyond an edge. */
+static float alike(const swarf_canvas *c, const swarf_sight *own, const swarf_sight *other)
+{
+    float cosine = 0, off = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        cosine += own->normal[axis] * other->normal[axis];
+        off += (other->point[axis] - own->point[axis]) * own->normal[axis];
+    }
+    return cosine > 0.8f && fabsf(off) < 4 * (float)swarf_look_footprint(&c->look, own) ? cosine * cosine : 0;
+}
+
+static swarf_status spread_row(void *context, size_t row)
+{
+    const sky_work *w = context;
+    const swarf_canvas *c = w->canvas;
+    const int32_t y = (int32_t)row;
+    for (int32_t x = 0; x < c->width; x++) {
+        const swarf_sight *own = &c->middle[swarf_canvas_at(c, x, y)];
+        float sum = 0, weight = 0;
+        const int32_t bx0 = (x - 3) / BLOCK, by0 = (y - 3) / BLOCK;
+        for (int32_t by = by0 < 0 ? 0 : by0; is_solid(own) && by < by0 + PATTERN && by < w->down; by++)
+            for (int32_t bx = bx0 < 0 ? 0 : bx0; bx < bx0 + PATTERN && bx < w->across; bx++) {
+                const float open = w->open[(size_t)by * (size_t)w->across + (size_t)bx];
+                if (open < 0) continue;
+                const float part = alike(c, own, &c->middle[swarf_canvas_at(c, bx * BLOCK, by * BLOCK)]);
+                sum += part * open;
+                weight += part;
+            }
+        c->sky[swarf_canvas_at(c, x, y)] = weight > 0 ? sum / weight : is_solid(own) ? 0.8f : 1;
+    }
+    return SWARF_OK;
+}
+
+static swarf_status shadow_row(void *context, size_t row)
+{
+    const swarf_canvas *c = context;
+    for (int32_t x0 = 0; x0 < c->width; x0 += SWARF_PACKET) {
+        swarf_rays rays;
+        const swarf_sight *sight = &c->middle[swarf_canvas_at(c, x0, (int32_t)row)];
+        uint8_t *sun = &c->sun[swarf_canvas_at(c, x0, (int32_t)row)];
+        rays.active = 0;
+        for (int ray = 0; ray < SWARF_PACKET; ray++) {
+            const int there = x0 + ray < c->width && is_solid(&sight[ray]);
+            rays.reach[ray] = c->look.size;
+            for (int axis = 0; axis < 3; axis++) {
+                rays.direction[axis][ray] = c->shading.light[axis];
+                rays.origin[axis][ray] = 0;
+            }
+            if (x0 + ray < c->width) sun[ray] = 255;
+            if (!there) continue;
+            start_above(c, &sight[ray], &rays, ray);
+            rays.active |= 1u << ray;
+        }
+        if (!rays.active) continue;
+        for (unsigned left = swarf_look_blocked(&c->look, &rays); left; left &= left - 1) sun[__builtin_ctz(left)] = 0;
+    }
+    return SWARF_OK;
+}
+
+swarf_status swarf_canvas_light(swarf_canvas *c, const swarf_progress *progress, double from, double to)
+{
+    const size_t squares = (size_t)c->width * (size_t)c->height;
+    const double middle = c->options->occlusion ? from + 0.7 * (to - from) : from;
+    if (c->options->occlusion) {
+        sky_work work = {c, (c->width + BLOCK - 1) / BLOCK, (c->height + BLOCK - 1) / BLOCK, NULL};
+        c->sky = malloc(squares * sizeof *c->sky);
+        work.open = malloc((size_t)work.across * (size_t)work.down * sizeof *work.open);
+        swarf_status status = c->sky && work.open ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
+        if (status == SWARF_OK)
+            status = swarf_parallel_for((size_t)work.down, look_up_row, &work, progress, from, middle);
+        if (status == SWARF_OK) status = swarf_parallel_for((size_t)c->height, spread_row, &work, NULL, 0, 1);
+        free(work.open);
+        SWARF_TRY(status);
+    }
+    if (!c->options->shadow) return SWARF_OK;
+    c->sun = malloc(squares);
+    if (!c->sun) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
+    return swarf_parallel_for((size_t)c->height, shadow_row, c, progress, middle, to);
+}
