@@ -271,7 +271,7 @@ static PyObject *program_sections(PyObject *self, void *Py_UNUSED(closure))
     _Static_assert(sizeof(swarf_section) == 32, "the format below");
     const swarf_program *handle = handle_of(self);
     return buffer_view(state_of(self), self, swarf_program_sections(handle),
-                       "T{i:tool:i:operation:i:spindle:i:coolant:d:spindle_rpm:i:work_offset:i:reserved:}",
+                       "T{i:tool:i:operation:i:spindle:i:coolant:d:spindle_rpm:i:work_offset:i:source:}",
                        sizeof(swarf_section), swarf_program_section_count(handle), 0,
                        &((program_object *)self)->exports);
 }
@@ -373,7 +373,7 @@ static PyGetSetDef program_getset[] = {
      "Read-only view of the arcs: records centre (3 float64), angle_rad, plane (int32), reserved.", NULL},
     {"sections", program_sections, NULL,
      "Read-only view of the sections: records tool, operation, spindle, coolant (int32), spindle_rpm (float64),\n"
-     "work_offset, reserved (int32).",
+     "work_offset, source (int32).",
      NULL},
     {"operations", program_operations, NULL, "Names of the operations.", NULL},
     {"tools", program_tools, NULL, "Numbers of the tools that feed moves use, sorted; -1: no tool loaded.", NULL},

@@ -140,7 +140,7 @@ class Program:
     @property
     def sections(self) -> memoryview:
         """Read-only view of the sections: records tool, operation, spindle, coolant (int32), spindle_rpm (float64),
-        work_offset, reserved (int32)."""
+        work_offset, source (int32)."""
     @property
     def operations(self) -> tuple[str, ...]:
         """Names of the operations."""

@@ -3,24 +3,24 @@
 #include "gcode/machine.h"
 
 #include "base/status.h"
-#include "program/program.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* The centre of an arc of radius |r| between two points: left of the way for ccw and r > 0 (the shorter arc), on the
  * other side for either alone. Fails unless the points are at most 2 |r| apart. */
-static swarf_status centre_from_radius(const swarf_machine *machine, const swarf_block *block, const swarf_word *word,
-                                       const double from[2], const double to[2], double r, int ccw, double out[2])
+static swarf_status centre_from_radius(const swarf_machine *machine, const swarf_word *word, const double from[2],
+                                       const double to[2], double r, int ccw, double out[2])
 {
     const double d[2] = {to[0] - from[0], to[1] - from[1]};
     const double chord = hypot(d[0], d[1]), half = 0.5 * chord, radius = fabs(r);
     if (!(chord > 1e-6))
-        return swarf_gcode_fail(&machine->place, block, word,
+        return swarf_gcode_fail(machine, word,
                                 "makes no arc between equal points; a full circle needs its centre by I, J or K");
     if (radius < half - swarf_arc_tolerance(half))
-        return swarf_gcode_fail(&machine->place, block, word,
+        return swarf_gcode_fail(machine, word,
                                 "is too small: the ends are %.6g mm apart, so R must be at least %.6g", chord,
-                                half / machine->unit_mm);
+                                half / machine->modes.unit_mm);
     const double height = radius > half ? sqrt((radius - half) * (radius + half)) : 0.0;
     const double side = (r > 0.0) == (ccw != 0) ? height : -height;
     out[0] = from[0] + 0.5 * d[0] - side * d[1] / chord;
@@ -28,60 +28,101 @@ static swarf_status centre_from_radius(const swarf_machine *machine, const swarf
     return SWARF_OK;
 }
 
+/* LinuxCNC's manual, "Center Format Arcs": radii differ by at most 0.5 mm, and by at most 0.005 mm or 0.1 % of the
+ * radius; in inches 0.05 and 0.0005. */
+static double tolerance_of(const swarf_machine *machine, double radius)
+{
+    const double unit = machine->modes.unit_mm == 1.0 ? 1.0 : 2.54;
+    return fmin(0.5 * unit, fmax(0.005 * unit, 0.001 * radius));
+}
+
+/* The centre by I J K; at least one of the plane's two, under G90.1 both. */
+static swarf_status read_centre(swarf_machine *machine, swarf_block *block, const swarf_word *word, const int axes[3],
+                                double centre[3], int *offsets)
+{
+    *offsets = 0;
+    for (int i = 0; i < 2; i++) {
+        const char letter = (char)('I' + axes[i]);
+        if (!swarf_block_has(block, letter)) continue;
+        double value = 0.0;
+        SWARF_TRY(swarf_machine_length(machine, swarf_block_take(block, letter), &value));
+        centre[axes[i]] = machine->modes.arc_absolute ? value : machine->position[axes[i]] + value;
+        ++*offsets;
+    }
+    if (swarf_block_has(block, 'R') || *offsets >= (machine->modes.arc_absolute ? 2 : 1)) return SWARF_OK;
+    return swarf_gcode_fail(machine, word, "arc needs a centre by %c %s %c%s, or R", 'I' + axes[0],
+                            machine->modes.arc_absolute ? "and" : "or", 'I' + axes[1],
+                            machine->modes.arc_absolute ? " (both under G90.1)" : "");
+}
+
+static swarf_status check_radii(const swarf_machine *machine, const swarf_word *word, const int axes[3],
+                                const double *start, const double *end, const double *centre)
+{
+    const double r0 = hypot(start[axes[0]] - centre[axes[0]], start[axes[1]] - centre[axes[1]]);
+    const double r1 = hypot(end[axes[0]] - centre[axes[0]], end[axes[1]] - centre[axes[1]]);
+    const double tolerance = tolerance_of(machine, fmax(r0, r1)), unit = machine->modes.unit_mm;
+    if (fabs(r0 - r1) <= tolerance) return SWARF_OK;
+    swarf_arc fit;
+    const double from[3] = {start[0], start[1], start[2]}, to[3] = {end[0], end[1], end[2]};
+    char better[120] = "";
+    if (swarf_arc_make(from, to, centre, machine->modes.plane, 1, 1, INFINITY, &fit) == SWARF_OK && r1 > 0.0) {
+        /* where a centre on the same side would fit */
+        const double chord = hypot(to[axes[0]] - from[axes[0]], to[axes[1]] - from[axes[1]]);
+        const double shift = chord > 0.0 ? (r1 * r1 - r0 * r0) / (2.0 * chord * chord) : 0.0;
+        const double base[2] = {machine->modes.arc_absolute ? 0.0 : start[axes[0]],
+                                machine->modes.arc_absolute ? 0.0 : start[axes[1]]};
+        snprintf(better, sizeof better, "; %c%.6g %c%.6g would fit", 'I' + axes[0],
+                 (centre[axes[0]] + shift * (to[axes[0]] - from[axes[0]]) - base[0]) / unit, 'I' + axes[1],
+                 (centre[axes[1]] + shift * (to[axes[1]] - from[axes[1]]) - base[1]) / unit);
+    }
+    return swarf_gcode_fail(machine, word,
+                            "arc: the radius is %.6g mm at the start but %.6g mm at the end (they may differ by "
+                            "%.3g mm)%s",
+                            r0, r1, tolerance, better);
+}
+
 swarf_status swarf_machine_arc(swarf_machine *machine, swarf_block *block, const swarf_word *word)
 {
-    const swarf_place *place = &machine->place;
-    int axes[3]; /* first, second, normal */
-    swarf_plane_axes(machine->plane, &axes[0], &axes[1], &axes[2]);
+    int axes[3], any, offsets, turns = 1; /* first, second, normal */
+    swarf_plane_axes(machine->modes.plane, &axes[0], &axes[1], &axes[2]);
     const double *start = machine->position;
-    double end[3] = {start[0], start[1], start[2]}, centre[3] = {start[0], start[1], start[2]};
-    int in_plane = 0, offsets = 0;
-    for (int i = 0; i < 3; i++) {
-        const int k = axes[i];
-        const char letter = (char)('X' + k), offset_letter = (char)('I' + k);
-        if (swarf_block_has(block, letter)) {
-            const swarf_word *axis = swarf_block_take(block, letter);
-            double value = 0.0;
-            SWARF_TRY(swarf_machine_length(machine, block, axis, &value));
-            if (machine->incremental && isnan(start[k]))
-                return swarf_gcode_fail(place, block, axis,
-                                        "is a step from an unknown position; command %c under G90 first", letter);
-            end[k] = machine->incremental ? start[k] + value : value;
-            in_plane += i < 2;
-        }
-        if (i < 2 && swarf_block_has(block, offset_letter)) {
-            double value = 0.0;
-            SWARF_TRY(swarf_machine_length(machine, block, swarf_block_take(block, offset_letter), &value));
-            centre[k] = machine->arc_absolute ? value : start[k] + value;
-            offsets++;
-        }
-    }
-    const char first = "XYZ"[axes[0]], second = "XYZ"[axes[1]];
+    double end[SWARF_AXES], centre[3] = {start[0], start[1], start[2]}, feed = 0.0;
+    const int in_plane = swarf_block_has(block, "XYZ"[axes[0]]) || swarf_block_has(block, "XYZ"[axes[1]]);
+    if (swarf_block_group(block, SWARF_GROUP_NONMODAL) &&
+        swarf_block_group(block, SWARF_GROUP_NONMODAL)->value == 530.0)
+        return swarf_gcode_fail(machine, swarf_block_group(block, SWARF_GROUP_NONMODAL),
+                                "moves in machine coordinates by G0 or G1 only");
+    if (machine->comp.leaving)
+        return swarf_gcode_fail(machine, word, "is an arc: the move after G40 must be straight");
+    SWARF_TRY(swarf_machine_target(machine, block, end, &any));
+    SWARF_TRY(read_centre(machine, block, word, axes, centre, &offsets));
     if (isnan(start[axes[0]]) || isnan(start[axes[1]]))
-        return swarf_gcode_fail(place, block, word, "arc starts at an unknown position; command %c and %c first", first,
-                                second);
-    const int ccw = machine->motion == 30;
-    int turns = 1;
+        return swarf_gcode_fail(machine, word, "arc starts at an unknown position; command %c and %c first",
+                                "XYZ"[axes[0]], "XYZ"[axes[1]]);
+    const int ccw = machine->modes.motion == 30;
     if (swarf_block_has(block, 'P') && !(block->used & SWARF_LETTER('P')))
-        SWARF_TRY(swarf_machine_whole(machine, block, swarf_block_take(block, 'P'), 1, SWARF_ARC_TURNS_MAX, &turns));
+        SWARF_TRY(swarf_machine_whole(machine, swarf_block_take(block, 'P'), 1, SWARF_ARC_TURNS_MAX, &turns));
     if (swarf_block_has(block, 'R')) {
         const swarf_word *radius = swarf_block_take(block, 'R');
-        if (offsets) return swarf_gcode_fail(place, block, radius, "and a centre by I, J, K; an arc takes one of them");
-        if (!in_plane) return swarf_gcode_fail(place, block, radius, "needs an end: %c or %c", first, second);
+        if (offsets) return swarf_gcode_fail(machine, radius, "and a centre by I, J, K; an arc takes one of them");
+        if (!in_plane)
+            return swarf_gcode_fail(machine, radius, "needs an end: %c or %c", "XYZ"[axes[0]], "XYZ"[axes[1]]);
         double r = 0.0, c[2] = {0.0, 0.0};
-        SWARF_TRY(swarf_machine_length(machine, block, radius, &r));
-        if (r == 0.0) return swarf_gcode_fail(place, block, radius, "radius must not be 0");
+        SWARF_TRY(swarf_machine_length(machine, radius, &r));
+        if (r == 0.0) return swarf_gcode_fail(machine, radius, "radius must not be 0");
         const double from[2] = {start[axes[0]], start[axes[1]]}, to[2] = {end[axes[0]], end[axes[1]]};
-        SWARF_TRY(centre_from_radius(machine, block, radius, from, to, r, ccw, c));
+        SWARF_TRY(centre_from_radius(machine, radius, from, to, r, ccw, c));
         centre[axes[0]] = c[0];
         centre[axes[1]] = c[1];
-    } else if (offsets < (machine->arc_absolute ? 2 : 1)) {
-        return swarf_gcode_fail(place, block, word, "arc needs a centre by %c %s %c%s, or R", 'I' + axes[0],
-                                machine->arc_absolute ? "and" : "or", 'I' + axes[1],
-                                machine->arc_absolute ? " (both under G90.1)" : "");
     }
-    swarf_arc arc;
-    if (swarf_arc_make(start, end, centre, machine->plane, ccw, turns, &arc) != SWARF_OK)
-        return swarf_gcode_fail(place, block, word, "%s", swarf_error_last());
-    return swarf_machine_turn(machine, block, word, end, &arc);
+    SWARF_TRY(check_radii(machine, word, axes, start, end, centre));
+    double length = 0.0;
+    if (machine->modes.feed_mode == 930) {
+        swarf_path path = {{start[0], start[1], start[2]}, {end[0], end[1], end[2]}, 1, 1, {{0}, 0, 0, 0}};
+        if (swarf_arc_make(path.start, path.end, centre, machine->modes.plane, ccw, turns, INFINITY, &path.arc) ==
+            SWARF_OK)
+            length = swarf_path_length(&path);
+    }
+    SWARF_TRY(swarf_machine_feed(machine, block, word, length, &feed));
+    return swarf_machine_turn(machine, word, end, centre, ccw, turns, feed);
 }

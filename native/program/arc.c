@@ -35,7 +35,7 @@ static double angle_between(const double u[2], const double v[2], int ccw)
 }
 
 swarf_status swarf_arc_make(const double start[3], const double end[3], const double centre[3], swarf_plane plane,
-                            int ccw, int turns, swarf_arc *out)
+                            int ccw, int turns, double tolerance_mm, swarf_arc *out)
 {
     SWARF_REQUIRE(start && end && centre && out, "arc: NULL");
     SWARF_REQUIRE(plane >= SWARF_PLANE_XY && plane <= SWARF_PLANE_YZ, "arc: %d is not a plane", (int)plane);
@@ -61,7 +61,7 @@ swarf_status swarf_arc_make(const double start[3], const double end[3], const do
     const double shift = length > same_point_mm ? (r0 - r1) * (r0 + r1) / (2.0 * length) : 0.0;
     const double shift_a = length > same_point_mm ? -shift * chord[0] / length : 0.0;
     const double shift_b = length > same_point_mm ? -shift * chord[1] / length : 0.0;
-    const double tolerance = swarf_arc_tolerance(fmax(r0, r1));
+    const double tolerance = tolerance_mm > 0.0 ? tolerance_mm : swarf_arc_tolerance(fmax(r0, r1));
     SWARF_REQUIRE(fabs(r0 - r1) <= tolerance,
                   "arc: the radius is %.6g mm at the start but %.6g mm at the end (they may differ by %.3g mm); "
                   "the centre %c%.6g %c%.6g would fit",

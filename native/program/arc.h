@@ -22,9 +22,9 @@ static inline void swarf_plane_axes(swarf_plane plane, int *first, int *second, 
 /** How far the radii at both ends of an arc may differ, mm. */
 double swarf_arc_tolerance(double radius);
 
-/** Check an arc and make its table entry; swarf_program_add_arc() tells the rules. The text of a failure
- *  (SWARF_ERROR_ARGUMENT) names no line. */
+/** Check an arc and make its table entry; swarf_program_add_arc() tells the rules. The radii may differ by
+ *  `tolerance_mm`, 0: by swarf_arc_tolerance(). The text of a failure (SWARF_ERROR_ARGUMENT) names no line. */
 swarf_status swarf_arc_make(const double start[3], const double end[3], const double centre[3], swarf_plane plane,
-                            int ccw, int turns, swarf_arc *out);
+                            int ccw, int turns, double tolerance_mm, swarf_arc *out);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Program: the flat array of moves, the arcs and sections they point to, the operations' names.
+/* Program: the flat array of moves, the arcs and sections they point to, the names of operations and sources, and
+ * beside them the rare rows that say where A B C U V W stand.
  *
  *     moves    [40 B each]  end | feed | line | arc ----> arcs     [48 B each]
  *                                   section_kind >> 3 --> sections [32 B each] -- operation --> names
@@ -33,6 +34,12 @@ struct swarf_program {
     size_t slot_count; /* a power of two, or 0 */
     char **operations;
     size_t operation_count, operation_room;
+    char **sources;
+    size_t source_count, source_room;
+    swarf_axes *axes;
+    size_t axes_count, axes_room;
+    double axes_now[6];
+    int axes_stale; /* `axes_now` is not what the last row says */
     swarf_section current;
     uint32_t current_index;
     int current_stale; /* `current` has no index yet */
@@ -79,6 +86,9 @@ void swarf_program_release(swarf_program *program)
     if (!program || atomic_fetch_sub_explicit(&program->references, 1, memory_order_acq_rel) != 1) return;
     for (size_t i = 0; i < program->operation_count; i++) free(program->operations[i]);
     free(program->operations);
+    for (size_t i = 0; i < program->source_count; i++) free(program->sources[i]);
+    free(program->sources);
+    free(program->axes);
     free(program->slots);
     free(program->sections);
     free(program->arcs);
@@ -86,19 +96,46 @@ void swarf_program_release(swarf_program *program)
     free(program);
 }
 
-swarf_status swarf_program_add_operation(swarf_program *program, const char *name)
+/* Append a copy of `name` to a list of names. */
+static swarf_status add_name(char ***names, size_t *count, size_t *room, const char *name)
 {
-    SWARF_REQUIRE(program && name, "program: operation without a name");
-    if (program->operation_count >= INT32_MAX) return swarf_fail(SWARF_ERROR_MEMORY, "program: too many operations");
-    SWARF_TRY(swarf_array_reserve((void **)&program->operations, &program->operation_room, program->operation_count + 1,
-                                  sizeof *program->operations));
+    if (*count >= INT32_MAX) return swarf_fail(SWARF_ERROR_MEMORY, "program: too many names");
+    SWARF_TRY(swarf_array_reserve((void **)names, room, *count + 1, sizeof **names));
     const size_t size = strlen(name) + 1;
     char *copy = malloc(size);
     if (!copy) return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
     memcpy(copy, name, size);
-    program->current.operation = (int32_t)program->operation_count;
-    program->operations[program->operation_count++] = copy;
+    (*names)[(*count)++] = copy;
+    return SWARF_OK;
+}
+
+swarf_status swarf_program_add_operation(swarf_program *program, const char *name)
+{
+    SWARF_REQUIRE(program && name, "program: operation without a name");
+    SWARF_TRY(add_name(&program->operations, &program->operation_count, &program->operation_room, name));
+    program->current.operation = (int32_t)program->operation_count - 1;
     program->current_stale = 1;
+    return SWARF_OK;
+}
+
+swarf_status swarf_program_add_source(swarf_program *program, const char *name, int32_t *index)
+{
+    SWARF_REQUIRE(program && name && index, "program: source without a name");
+    SWARF_TRY(add_name(&program->sources, &program->source_count, &program->source_room, name));
+    *index = (int32_t)program->source_count - 1;
+    return SWARF_OK;
+}
+
+swarf_status swarf_program_set_axes(swarf_program *program, const double value[6])
+{
+    SWARF_REQUIRE(program && value, "program: NULL");
+    for (int k = 0; k < 6; k++)
+        SWARF_REQUIRE(fabs(value[k]) <= SWARF_COORDINATE_LIMIT_MM, "program: %c is %g; at most %g is possible",
+                      "ABCUVW"[k], value[k], SWARF_COORDINATE_LIMIT_MM);
+    for (int k = 0; k < 6; k++) {
+        program->axes_stale |= program->axes_now[k] != value[k];
+        program->axes_now[k] = value[k];
+    }
     return SWARF_OK;
 }
 
@@ -113,9 +150,10 @@ swarf_status swarf_program_set_section(swarf_program *program, const swarf_secti
     SWARF_REQUIRE(section->spindle >= SWARF_SPINDLE_OFF && section->spindle <= SWARF_SPINDLE_CCW,
                   "program: %d is not a spindle state", (int)section->spindle);
     SWARF_REQUIRE(section->tool >= -1, "program: tool number %d; -1 means none", (int)section->tool);
+    SWARF_REQUIRE(section->source >= 0 && (section->source == 0 || (size_t)section->source < program->source_count),
+                  "program: section of source %d, but %zu were added", (int)section->source, program->source_count);
     program->current = *section;
     program->current.spindle_rpm += 0.0; /* -0 becomes 0: sections are compared by their bytes */
-    program->current.reserved = 0;
     program->current_stale = 1;
     return SWARF_OK;
 }
@@ -189,6 +227,14 @@ swarf_status swarf_program_push(swarf_program *program, swarf_move_kind kind, co
 {
     if (program->current_stale) SWARF_TRY(settle_section(program));
     SWARF_TRY(reserve_moves(program));
+    if (program->axes_stale) {
+        SWARF_TRY(swarf_array_reserve((void **)&program->axes, &program->axes_room, program->axes_count + 1,
+                                      sizeof *program->axes));
+        swarf_axes *row = &program->axes[program->axes_count++];
+        row->first = program->move_count;
+        memcpy(row->value, program->axes_now, sizeof row->value);
+        program->axes_stale = 0;
+    }
     int32_t arc_index = -1;
     if (arc) {
         if (program->arc_count >= arc_limit) return swarf_fail(SWARF_ERROR_MEMORY, "program: too many arcs");
@@ -244,7 +290,7 @@ swarf_status swarf_program_add_arc(swarf_program *program, const double end[3], 
     SWARF_REQUIRE(program && end && centre, "line %u: NULL", line);
     SWARF_TRY(check_move(program, end, feed_mm_min, line));
     swarf_arc arc;
-    const swarf_status status = swarf_arc_make(program->position, end, centre, plane, ccw, turns, &arc);
+    const swarf_status status = swarf_arc_make(program->position, end, centre, plane, ccw, turns, 0.0, &arc);
     if (status != SWARF_OK) return swarf_fail_within(status, "line %u", line);
     /* height unknown: there is nothing to sweep, only a place to arrive at */
     if (!position_known(program)) return swarf_program_push(program, SWARF_MOVE_POSITION, end, NULL, 0.0, line);
@@ -299,6 +345,49 @@ size_t swarf_program_operation_count(const swarf_program *program)
 const char *swarf_program_operation_name(const swarf_program *program, size_t index)
 {
     return program && index < program->operation_count ? program->operations[index] : NULL;
+}
+
+size_t swarf_program_source_count(const swarf_program *program)
+{
+    return program ? program->source_count : 0;
+}
+
+const char *swarf_program_source_name(const swarf_program *program, size_t index)
+{
+    return program && index < program->source_count ? program->sources[index] : index == 0 ? "" : NULL;
+}
+
+size_t swarf_program_axes_count(const swarf_program *program)
+{
+    return program ? program->axes_count : 0;
+}
+
+const swarf_axes *swarf_program_axes(const swarf_program *program)
+{
+    return program ? program->axes : NULL;
+}
+
+int swarf_program_move_axes(const swarf_program *program, size_t index, double start[6], double end[6])
+{
+    for (int k = 0; k < 6; k++) start[k] = end[k] = 0.0;
+    if (!program || program->axes_count == 0) return 0;
+    size_t lo = 0, hi = program->axes_count; /* rows before `lo` have begun at `index`, rows from `hi` on have not */
+    while (lo < hi) {
+        const size_t middle = lo + (hi - lo) / 2;
+        if (program->axes[middle].first <= index)
+            lo = middle + 1;
+        else
+            hi = middle;
+    }
+    if (lo == 0) return 0;
+    memcpy(end, program->axes[lo - 1].value, sizeof program->axes->value);
+    if (program->axes[lo - 1].first < index)
+        memcpy(start, end, sizeof program->axes->value);
+    else if (lo > 1)
+        memcpy(start, program->axes[lo - 2].value, sizeof program->axes->value);
+    int off_zero = 0;
+    for (int k = 0; k < 6; k++) off_zero |= start[k] != 0.0 || end[k] != 0.0;
+    return off_zero;
 }
 
 void swarf_program_move_start(const swarf_program *program, size_t index, double out[3])
