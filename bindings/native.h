@@ -106,7 +106,15 @@ typedef struct program_object {
     PyObject_HEAD swarf_program *handle;
     Py_ssize_t exports; /* views of its arrays: they must not move */
     Py_ssize_t readers; /* calls without the GIL that read it */
+    PyObject *notes;    /* tuple of what its reader had to say; NULL: none */
 } program_object;
+
+/** Program.read_gcode(), parse_gcode() and check_gcode(); class methods. In gcode.c. */
+PyObject *gcode_read(PyObject *type, PyObject *args, PyObject *keywords);
+PyObject *gcode_parse(PyObject *type, PyObject *args, PyObject *keywords);
+PyObject *gcode_check(PyObject *type, PyObject *args, PyObject *keywords);
+/** A new Program that owns `handle`, released on failure. */
+PyObject *program_wrap(PyTypeObject *type, swarf_program *handle);
 extern PyType_Spec program_spec;
 
 /** Check first and count against the program's moves; `count` None means up to the end. */

@@ -21,7 +21,7 @@ static swarf_program *handle_of(PyObject *self)
     return ((program_object *)self)->handle;
 }
 
-static PyObject *program_wrap(PyTypeObject *type, swarf_program *handle)
+PyObject *program_wrap(PyTypeObject *type, swarf_program *handle)
 {
     program_object *self = (program_object *)PyType_GenericAlloc(type, 0);
     if (!self) {
@@ -47,58 +47,8 @@ static PyObject *program_new(PyTypeObject *type, PyObject *args, PyObject *keywo
 static void program_dealloc(PyObject *self)
 {
     swarf_program_release(handle_of(self));
+    Py_XDECREF(((program_object *)self)->notes);
     object_free(self);
-}
-
-/* ---- reading G-code ---- */
-
-static int gcode_options(PyObject *start, swarf_gcode_options *out)
-{
-    *out = swarf_gcode_options_default();
-    return start == Py_None ? 0 : buffer_point(start, "start", out->start);
-}
-
-static PyObject *program_read_gcode(PyObject *type, PyObject *args, PyObject *keywords)
-{
-    static char *names[] = {"path", "start", "progress", NULL};
-    PyObject *path, *start = Py_None, *progress = NULL, *result = NULL;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O&|$OO:read_gcode", names, PyUnicode_FSConverter, &path, &start,
-                                     &progress))
-        return NULL;
-    swarf_gcode_options options;
-    native_call call;
-    if (!gcode_options(start, &options) && !call_begin(&call, progress)) {
-        swarf_program *handle = NULL;
-        const swarf_status status = swarf_gcode_read_file(PyBytes_AsString(path), &options, &call.progress, &handle);
-        if (call_end(&call, state_of_type((PyTypeObject *)type), status) == 0)
-            result = program_wrap((PyTypeObject *)type, handle);
-        else
-            swarf_program_release(handle);
-    }
-    Py_DECREF(path);
-    return result;
-}
-
-static PyObject *program_parse_gcode(PyObject *type, PyObject *args, PyObject *keywords)
-{
-    static char *names[] = {"text", "name", "start", "progress", NULL};
-    const char *text, *name = "text";
-    Py_ssize_t length;
-    PyObject *start = Py_None, *progress = NULL;
-    /* "s#": a str's own UTF-8 bytes or those of bytes; both immutable and held by the caller's argument tuple. */
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "s#|$sOO:parse_gcode", names, &text, &length, &name, &start,
-                                     &progress))
-        return NULL;
-    swarf_gcode_options options;
-    native_call call;
-    if (gcode_options(start, &options) || call_begin(&call, progress)) return NULL;
-    swarf_program *handle = NULL;
-    const swarf_status status = swarf_gcode_read(text, (size_t)length, name, &options, &call.progress, &handle);
-    if (call_end(&call, state_of_type((PyTypeObject *)type), status)) {
-        swarf_program_release(handle);
-        return NULL;
-    }
-    return program_wrap((PyTypeObject *)type, handle);
 }
 
 /* ---- building ---- */
@@ -243,6 +193,46 @@ static PyObject *program_seconds(PyObject *self, PyObject *args, PyObject *keywo
     return failed ? NULL : PyFloat_FromDouble(seconds);
 }
 
+/* A number for all of X, Y, Z, or three; None: as it is. */
+static int limit_of(PyObject *object, const char *name, double out[3])
+{
+    if (!object || object == Py_None) return 0;
+    if (!PyNumber_Check(object) || PySequence_Check(object)) return buffer_point(object, name, out);
+    const double value = PyFloat_AsDouble(object);
+    if (value == -1.0 && PyErr_Occurred()) return -1;
+    for (int k = 0; k < 3; k++) out[k] = value;
+    return 0;
+}
+
+static PyObject *program_times(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"rapid_mm_min",  "feed_mm_min", "acceleration_mm_s2", "junction_mm", "rotary_deg_min",
+                            "tool_change_s", NULL};
+    swarf_machine_limits limits = swarf_machine_limits_default();
+    PyObject *rapid = NULL, *feed = NULL, *acceleration = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|$OOOddd:times", names, &rapid, &feed, &acceleration,
+                                     &limits.junction_mm, &limits.rotary_deg_min, &limits.tool_change_s) ||
+        limit_of(rapid, "rapid_mm_min", limits.rapid_mm_min) || limit_of(feed, "feed_mm_min", limits.feed_mm_min) ||
+        limit_of(acceleration, "acceleration_mm_s2", limits.acceleration_mm_s2))
+        return NULL;
+    program_object *program = (program_object *)self;
+    const size_t count = swarf_program_move_count(program->handle);
+    PyObject *bytes = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(count * sizeof(double)));
+    if (!bytes) return NULL;
+    native_call call;
+    program->readers++;
+    call_begin(&call, NULL);
+    const swarf_status status =
+        swarf_program_times(program->handle, &limits, (double *)(void *)PyBytes_AsString(bytes));
+    const int failed = call_end(&call, state_of(self), status);
+    program->readers--;
+    PyObject *result =
+        failed ? NULL
+               : buffer_view(state_of(self), bytes, PyBytes_AsString(bytes), "d", sizeof(double), count, 0, NULL);
+    Py_DECREF(bytes);
+    return result;
+}
+
 static Py_ssize_t program_length(PyObject *self)
 {
     return (Py_ssize_t)swarf_program_move_count(handle_of(self));
@@ -274,6 +264,33 @@ static PyObject *program_sections(PyObject *self, void *Py_UNUSED(closure))
                        "T{i:tool:i:operation:i:spindle:i:coolant:d:spindle_rpm:i:work_offset:i:source:}",
                        sizeof(swarf_section), swarf_program_section_count(handle), 0,
                        &((program_object *)self)->exports);
+}
+
+static PyObject *program_axes(PyObject *self, void *Py_UNUSED(closure))
+{
+    _Static_assert(sizeof(swarf_axes) == 56 && sizeof(size_t) == 8, "the format below");
+    const swarf_program *handle = handle_of(self);
+    return buffer_view(state_of(self), self, swarf_program_axes(handle), "T{Q:first:(6)d:value:}", sizeof(swarf_axes),
+                       swarf_program_axes_count(handle), 0, &((program_object *)self)->exports);
+}
+
+static PyObject *program_notes(PyObject *self, void *Py_UNUSED(closure))
+{
+    PyObject *notes = ((program_object *)self)->notes;
+    return notes ? Py_NewRef(notes) : PyTuple_New(0);
+}
+
+static PyObject *program_sources(PyObject *self, void *Py_UNUSED(closure))
+{
+    const swarf_program *handle = handle_of(self);
+    const size_t count = swarf_program_source_count(handle);
+    PyObject *result = PyTuple_New((Py_ssize_t)count);
+    for (size_t i = 0; result && i < count; i++) {
+        const char *name = swarf_program_source_name(handle, i);
+        PyObject *text = PyUnicode_DecodeUTF8(name, (Py_ssize_t)strlen(name), "surrogateescape");
+        if (!text || PyTuple_SetItem(result, (Py_ssize_t)i, text) < 0) Py_CLEAR(result);
+    }
+    return result;
 }
 
 static PyObject *program_operations(PyObject *self, void *Py_UNUSED(closure))
@@ -334,13 +351,23 @@ static PyObject *program_repr(PyObject *self)
 }
 
 static PyMethodDef program_methods[] = {
-    {"read_gcode", WITH_KEYWORDS(program_read_gcode), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "read_gcode($type, path, *, start=None, progress=None)\n--\n\n"
-     "Program from a G-code file; `start` is where the tool stands first. OSError, or FormatError\n"
-     "\"file:line:column: error: 'word' ...\". Any thread."},
-    {"parse_gcode", WITH_KEYWORDS(program_parse_gcode), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "parse_gcode($type, text, *, name='text', start=None, progress=None)\n--\n\n"
+    {"read_gcode", WITH_KEYWORDS(gcode_read), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
+     "read_gcode($type, path, *, start=None, dialect='linuxcnc', tools=None, parameters=None, search=None, "
+     "block_delete=False, line_limit=0, progress=None)\n--\n\n"
+     "Program from a G-code file. `start` is where the tool stands first; `dialect` \"linuxcnc\", \"grbl\", \"mach3\"\n"
+     "or \"fanuc\"; `tools` a LinuxCNC tool table file, or (number, diameter, length) rows in mm; `parameters` a\n"
+     "LinuxCNC parameter file; `search` folders of subroutine files, ':' between them; `block_delete` leaves out\n"
+     "lines that begin with '/'; `line_limit` bounds what loops execute (0: 20 million lines). OSError, or\n"
+     "FormatError \"file:line:column: error: 'word' ...\". Any thread."},
+    {"parse_gcode", WITH_KEYWORDS(gcode_parse), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
+     "parse_gcode($type, text, *, name='text', start=None, dialect='linuxcnc', tools=None, parameters=None, "
+     "search=None, block_delete=False, line_limit=0, progress=None)\n--\n\n"
      "The same from text (str or bytes); `name` stands for the file in errors."},
+    {"check_gcode", WITH_KEYWORDS(gcode_check), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
+     "check_gcode($type, path, *, start=None, dialect='linuxcnc', tools=None, parameters=None, search=None, "
+     "block_delete=False, line_limit=0, progress=None)\n--\n\n"
+     "What read_gcode() has to say of a file, as its notes: the first error, after which nothing is read, and the\n"
+     "warnings and messages before it. No FormatError."},
     {"add_operation", WITH_KEYWORDS(program_add_operation), METH_VARARGS | METH_KEYWORDS,
      "add_operation($self, name)\n--\n\nAdd an operation, make it current and return its index."},
     {"set_section", WITH_KEYWORDS(program_set_section), METH_VARARGS | METH_KEYWORDS,
@@ -361,6 +388,12 @@ static PyMethodDef program_methods[] = {
     {"seconds", WITH_KEYWORDS(program_seconds), METH_VARARGS | METH_KEYWORDS,
      "seconds($self, rapid_mm_min=5000.0)\n--\n\n"
      "Seconds that the moves take at their feeds, rapids at `rapid_mm_min`, without acceleration."},
+    {"times", WITH_KEYWORDS(program_times), METH_VARARGS | METH_KEYWORDS,
+     "times($self, *, rapid_mm_min=5000.0, feed_mm_min=5000.0, acceleration_mm_s2=500.0, junction_mm=0.01, "
+     "rotary_deg_min=3600.0, tool_change_s=0.0)\n--\n\n"
+     "Seconds of each move as a read-only float64 view: with the rapid rate, greatest feed and acceleration of each\n"
+     "axis (a number, or three for X, Y, Z), corners passed at the speed at which an arc that strays from them by\n"
+     "`junction_mm` holds the acceleration."},
     {NULL, NULL, 0, NULL},
 };
 
@@ -375,6 +408,13 @@ static PyGetSetDef program_getset[] = {
      "Read-only view of the sections: records tool, operation, spindle, coolant (int32), spindle_rpm (float64),\n"
      "work_offset, source (int32).",
      NULL},
+    {"axes", program_axes, NULL,
+     "Read-only view of where A, B, C (degrees), U, V, W (mm) stand: records first (uint64, the move from which on),\n"
+     "value (6 float64). Empty while they stand at 0.",
+     NULL},
+    {"notes", program_notes, NULL,
+     "What the reader had to say: (kind, source, line, column, text) each; kind \"warning\" or \"message\".", NULL},
+    {"sources", program_sources, NULL, "Names of the files the moves come from; sections point to them.", NULL},
     {"operations", program_operations, NULL, "Names of the operations.", NULL},
     {"tools", program_tools, NULL, "Numbers of the tools that feed moves use, sorted; -1: no tool loaded.", NULL},
     {NULL, NULL, NULL, NULL, NULL},

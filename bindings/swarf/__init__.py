@@ -42,6 +42,7 @@ from ._native import (
     threads,
     version,
 )
+from .gcode import read_gcode
 from .job import Job
 from .simulate import Result, simulate
 from .verify import Verification, verify
@@ -52,5 +53,5 @@ __all__ = [
     "BusyError", "Camera", "Cancelled", "Cluster", "Comparison", "Cutter", "Deviation", "Error", "Finding",
     "FormatError", "GeometryError", "Job", "Mesh", "Pick", "Picture", "Program", "Result", "Scene", "Simulation",
     "Solid", "Stock", "Verification", "compare_place", "compare_volume", "deviation_colours", "isa",
-    "measure_deviation", "memory_peak", "set_threads", "simulate", "threads", "verify", "version",
+    "measure_deviation", "memory_peak", "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
 ]

@@ -80,14 +80,56 @@ class Program:
 
     def __new__(cls, start: Optional[Point] = None) -> Program: ...
     @classmethod
-    def read_gcode(cls, path: Path, *, start: Optional[Point] = None, progress: Progress = None) -> Program:
-        """Program from a G-code file; ``start`` is where the tool stands first. OSError, or FormatError
-        "file:line:column: error: 'word' ...". Any thread."""
+    def read_gcode(
+        cls,
+        path: Path,
+        *,
+        start: Optional[Point] = None,
+        dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
+        tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
+        parameters: Optional[Path] = None,
+        search: Optional[str] = None,
+        block_delete: bool = False,
+        line_limit: int = 0,
+        progress: Progress = None,
+    ) -> Program:
+        """Program from a G-code file. ``start`` is where the tool stands first; ``tools`` a LinuxCNC tool table file,
+        or (number, diameter, length) rows in mm; ``parameters`` a LinuxCNC parameter file; ``search`` folders of
+        subroutine files, ':' between them; ``block_delete`` leaves out lines that begin with '/'; ``line_limit``
+        bounds what loops execute (0: 20 million lines). OSError, or FormatError "file:line:column: error: 'word' ...".
+        Any thread."""
     @classmethod
     def parse_gcode(
-        cls, text: Union[str, bytes], *, name: str = "text", start: Optional[Point] = None, progress: Progress = None
+        cls,
+        text: Union[str, bytes],
+        *,
+        name: str = "text",
+        start: Optional[Point] = None,
+        dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
+        tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
+        parameters: Optional[Path] = None,
+        search: Optional[str] = None,
+        block_delete: bool = False,
+        line_limit: int = 0,
+        progress: Progress = None,
     ) -> Program:
         """The same from text; ``name`` stands for the file in errors."""
+    @classmethod
+    def check_gcode(
+        cls,
+        path: Path,
+        *,
+        start: Optional[Point] = None,
+        dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
+        tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
+        parameters: Optional[Path] = None,
+        search: Optional[str] = None,
+        block_delete: bool = False,
+        line_limit: int = 0,
+        progress: Progress = None,
+    ) -> tuple[tuple[str, str, int, int, str], ...]:
+        """What read_gcode() has to say of a file, as its notes: the first error, after which nothing is read, and the
+        warnings and messages before it. No FormatError."""
     def add_operation(self, name: str) -> int:
         """Add an operation, make it current and return its index."""
     def set_section(
@@ -130,6 +172,19 @@ class Program:
         """Add a change to the tool of the current section."""
     def seconds(self, rapid_mm_min: float = 5000.0) -> float:
         """Seconds that the moves take at their feeds, rapids at ``rapid_mm_min``, without acceleration."""
+    def times(
+        self,
+        *,
+        rapid_mm_min: Union[float, Point] = 5000.0,
+        feed_mm_min: Union[float, Point] = 5000.0,
+        acceleration_mm_s2: Union[float, Point] = 500.0,
+        junction_mm: float = 0.01,
+        rotary_deg_min: float = 3600.0,
+        tool_change_s: float = 0.0,
+    ) -> memoryview:
+        """Seconds of each move as a read-only float64 view: with the rapid rate, greatest feed and acceleration of
+        each axis (a number, or three for X, Y, Z), corners passed at the speed at which an arc that strays from them
+        by ``junction_mm`` holds the acceleration."""
     @property
     def moves(self) -> memoryview:
         """Read-only view of the moves: records end (3 float64), feed_mm_min (float32), line (uint32), arc (int32,
@@ -141,6 +196,16 @@ class Program:
     def sections(self) -> memoryview:
         """Read-only view of the sections: records tool, operation, spindle, coolant (int32), spindle_rpm (float64),
         work_offset, source (int32)."""
+    @property
+    def axes(self) -> memoryview:
+        """Read-only view of where A, B, C (degrees), U, V, W (mm) stand: records first (uint64, the move from which
+        on), value (6 float64). Empty while they stand at 0."""
+    @property
+    def notes(self) -> tuple[tuple[str, str, int, int, str], ...]:
+        """What the reader had to say: (kind, source, line, column, text) each; kind "warning" or "message"."""
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Names of the files the moves come from; sections point to them."""
     @property
     def operations(self) -> tuple[str, ...]:
         """Names of the operations."""

@@ -24,18 +24,27 @@ def readers() -> dict[str, importlib.metadata.EntryPoint]:
     return {"." + entry.name.lower(): entry for entry in found}
 
 
-def read_gcode(path: str, progress: Optional[Callable[[float], Any]] = None) -> Job:
+def read_gcode(
+    path: str, progress: Optional[Callable[[float], Any]] = None, options: Optional[dict[str, Any]] = None
+) -> Job:
     """A Job with the program of a G-code file; tools and stock are for the caller to add."""
-    return Job(name=os.path.basename(path), program=Program.read_gcode(path, progress=progress))
+    program = Program.read_gcode(path, progress=progress, **(options or {}))
+    return Job(name=os.path.basename(path), program=program)
 
 
-def read(path: str, job: Optional[str] = None, progress: Optional[Callable[[float], Any]] = None) -> Job:
-    """The Job in a file; ``job`` names one of several. ValueError for an unknown suffix or a job G-code cannot have."""
+def read(
+    path: str,
+    job: Optional[str] = None,
+    progress: Optional[Callable[[float], Any]] = None,
+    gcode: Optional[dict[str, Any]] = None,
+) -> Job:
+    """The Job in a file; ``job`` names one of several, ``gcode`` are keywords of Program.read_gcode() where it is
+    G-code. ValueError for an unknown suffix or a job G-code cannot have."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix in GCODE_SUFFIXES:
         if job is not None:
             raise ValueError(f"{path}: a G-code file is one program, it has no job to choose")
-        return read_gcode(path, progress)
+        return read_gcode(path, progress, gcode)
     known = readers()
     entry = known.get(suffix)
     if entry is None:

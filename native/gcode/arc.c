@@ -18,9 +18,8 @@ static swarf_status centre_from_radius(const swarf_machine *machine, const swarf
         return swarf_gcode_fail(machine, word,
                                 "makes no arc between equal points; a full circle needs its centre by I, J or K");
     if (radius < half - swarf_arc_tolerance(half))
-        return swarf_gcode_fail(machine, word,
-                                "is too small: the ends are %.6g mm apart, so R must be at least %.6g", chord,
-                                half / machine->modes.unit_mm);
+        return swarf_gcode_fail(machine, word, "is too small: the ends are %.6g mm apart, so R must be at least %.6g",
+                                chord, half / machine->modes.unit_mm);
     const double height = radius > half ? sqrt((radius - half) * (radius + half)) : 0.0;
     const double side = (r > 0.0) == (ccw != 0) ? height : -height;
     out[0] = from[0] + 0.5 * d[0] - side * d[1] / chord;
@@ -28,12 +27,12 @@ static swarf_status centre_from_radius(const swarf_machine *machine, const swarf
     return SWARF_OK;
 }
 
-/* LinuxCNC's manual, "Center Format Arcs": radii differ by at most 0.5 mm, and by at most 0.005 mm or 0.1 % of the
- * radius; in inches 0.05 and 0.0005. */
+/* LinuxCNC's: radii differ by at most 0.1 % of the larger one, but always by 2 sqrt(2) hundredths of a millimetre
+ * (thousandths of an inch), never by a hundred times that. */
 static double tolerance_of(const swarf_machine *machine, double radius)
 {
-    const double unit = machine->modes.unit_mm == 1.0 ? 1.0 : 2.54;
-    return fmin(0.5 * unit, fmax(0.005 * unit, 0.001 * radius));
+    const double least = 2.0 * sqrt(2.0) * (machine->modes.unit_mm == 1.0 ? 0.01 : 0.0254);
+    return fmin(100.0 * least, fmax(least, 0.001 * radius));
 }
 
 /* The centre by I J K; at least one of the plane's two, under G90.1 both. */
@@ -92,8 +91,7 @@ swarf_status swarf_machine_arc(swarf_machine *machine, swarf_block *block, const
         swarf_block_group(block, SWARF_GROUP_NONMODAL)->value == 530.0)
         return swarf_gcode_fail(machine, swarf_block_group(block, SWARF_GROUP_NONMODAL),
                                 "moves in machine coordinates by G0 or G1 only");
-    if (machine->comp.leaving)
-        return swarf_gcode_fail(machine, word, "is an arc: the move after G40 must be straight");
+    if (machine->comp.leaving) return swarf_gcode_fail(machine, word, "is an arc: the move after G40 must be straight");
     SWARF_TRY(swarf_machine_target(machine, block, end, &any));
     SWARF_TRY(read_centre(machine, block, word, axes, centre, &offsets));
     if (isnan(start[axes[0]]) || isnan(start[axes[1]]))

@@ -42,16 +42,16 @@ typedef enum swarf_group {
 /** How one kind of control reads G-code. */
 typedef struct swarf_dialect {
     const char *name;
-    uint8_t bit;           /**< in the masks of the codes */
-    uint8_t expressions;   /**< parameters and expressions are read */
-    uint8_t o_words;       /**< o100 sub, if, while ... */
-    uint8_t k_repeats;     /**< cycles repeat by K (else by L) */
-    uint8_t dollar_system; /**< a line that begins with $ is a command to the control, not to the machine */
-    uint8_t needs_end;     /**< a file ends with M2, M30 or a second % */
-    uint8_t retract_to_r;  /**< G99 at the start, else G98 */
-    int16_t motion;        /**< motion mode at the start, times 10 */
-    int32_t call_depth;    /**< nested calls */
-    double whole_unit_mm;  /**< what 1 without a decimal point means for a length; 0: the unit in force */
+    uint8_t bit;            /**< in the masks of the codes */
+    uint8_t expressions;    /**< parameters and expressions are read */
+    uint8_t o_words;        /**< o100 sub, if, while ... */
+    uint8_t k_repeats;      /**< cycles repeat by K (else by L) */
+    uint8_t dollar_system;  /**< a line that begins with $ is a command to the control, not to the machine */
+    uint8_t needs_end;      /**< a file ends with M2, M30 or a second % */
+    uint8_t retract_to_r;   /**< G99 at the start, else G98 */
+    int16_t motion;         /**< motion mode at the start, times 10 */
+    int32_t call_depth;     /**< nested calls */
+    double whole_unit_mm;   /**< what 1 without a decimal point means for a length; 0: the unit in force */
     double chip_retract_mm; /**< G73, and how far above the last depth G83 turns to feed */
 } swarf_dialect;
 

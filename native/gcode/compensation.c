@@ -21,6 +21,9 @@
 
 static const double straight_rad = 0.05;
 
+/* The way back along the same line, whichever side rounding puts it on: around the corner. */
+static const double reverse_rad = 3.1405;
+
 /* Paths shorter than this are rounding of what is none. */
 static const double nothing_mm = 1e-7;
 
@@ -71,6 +74,12 @@ swarf_status swarf_machine_radius(swarf_machine *machine, swarf_block *block)
     if (word->value == 400.0) {
         if (!comp->side) return SWARF_OK;
         SWARF_TRY(swarf_compensation_flush(machine, word));
+        if (comp->entered) { /* from here on the place counts where the tool is */
+            int a, b;
+            plane_of(machine, &a, &b);
+            machine->position[a] = comp->at[0];
+            machine->position[b] = comp->at[1];
+        }
         comp->leaving = comp->entered;
         comp->side = 0;
         return SWARF_OK;
@@ -80,6 +89,7 @@ swarf_status swarf_machine_radius(swarf_machine *machine, swarf_block *block)
         return swarf_gcode_fail(machine, word, "does not work in the plane YZ; G17 or G18");
     double radius = 0.0;
     SWARF_TRY(radius_of(machine, block, word, &radius));
+    SWARF_TRY(swarf_machine_prepare(machine, word, machine->place.line));
     const int side = word->value < 415.0 ? 1 : -1;
     comp->side = radius < 0.0 ? -side : side;
     comp->radius = fabs(radius);
@@ -227,7 +237,7 @@ static swarf_status join(swarf_machine *machine, const swarf_word *word, swarf_c
     double end[2];
     const double turn = atan2(cross(last->tangent_out, next->tangent_in), dot(last->tangent_out, next->tangent_in));
     const int towards = comp->side * turn > 0.0;
-    if (fabs(turn) < straight_rad || (!towards && fabs(turn) > 0.0) || fabs(turn) > 3.141592) {
+    if (fabs(turn) < straight_rad || !towards || fabs(turn) > reverse_rad) {
         beside(comp, corner, last->normal_out, end);
         if (!goes_forward(comp, end)) return fail_gouge(machine, word);
         SWARF_TRY(let_out(machine, word, end));

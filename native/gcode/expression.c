@@ -61,7 +61,22 @@ static int read_letters(reader *r, const char *word)
 }
 
 typedef enum operation {
-    NONE, POWER, TIMES, OVER, MODULO, PLUS, MINUS, EQUAL, UNEQUAL, GREATER, NOT_LESS, LESS, NOT_GREATER, AND, OR, XOR
+    NONE,
+    POWER,
+    TIMES,
+    OVER,
+    MODULO,
+    PLUS,
+    MINUS,
+    EQUAL,
+    UNEQUAL,
+    GREATER,
+    NOT_LESS,
+    LESS,
+    NOT_GREATER,
+    AND,
+    OR,
+    XOR
 } operation;
 
 static int level_of(operation what)
@@ -74,9 +89,9 @@ static operation read_operation(reader *r)
     static const struct {
         const char *name;
         operation what;
-    } words[] = {{"**", POWER}, {"*", TIMES},    {"/", OVER},       {"MOD", MODULO}, {"+", PLUS},
-                 {"-", MINUS},  {"EQ", EQUAL},   {"NE", UNEQUAL},   {"GT", GREATER}, {"GE", NOT_LESS},
-                 {"LT", LESS},  {"LE", NOT_GREATER}, {"AND", AND},  {"OR", OR},      {"XOR", XOR}};
+    } words[] = {{"**", POWER}, {"*", TIMES},        {"/", OVER},     {"MOD", MODULO}, {"+", PLUS},
+                 {"-", MINUS},  {"EQ", EQUAL},       {"NE", UNEQUAL}, {"GT", GREATER}, {"GE", NOT_LESS},
+                 {"LT", LESS},  {"LE", NOT_GREATER}, {"AND", AND},    {"OR", OR},      {"XOR", XOR}};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (read_letters(r, words[i].name)) return words[i].what;
     return NONE;
@@ -206,11 +221,17 @@ static swarf_status read_exists(reader *r, const char *from, double *out)
     r->at++;
     if (!next_is(r, '#')) return fail_from(r, from, wrong);
     r->at++;
-    if (!next_is(r, '<')) return fail_from(r, from, wrong);
+    double value = 0.0;
+    if (!next_is(r, '<')) { /* a number exists when it can */
+        SWARF_TRY(read_value(r, &value));
+        if (!next_is(r, ']')) return fail_from(r, from, wrong);
+        r->at++;
+        *out = value >= 1.0 && value < SWARF_PARAMETERS;
+        return SWARF_OK;
+    }
     SWARF_TRY(read_name(r, from, name));
     if (!next_is(r, ']')) return fail_from(r, from, wrong);
     r->at++;
-    double value;
     *out = swarf_parameters_find(&r->machine->parameters, name) || swarf_machine_predefined(r->machine, name, &value);
     return SWARF_OK;
 }
@@ -248,7 +269,7 @@ static const char *apply(function what, double a, double *out)
 
 static swarf_status read_function(reader *r, double *out)
 {
-    static const char *const names[FUNCTIONS] = {"ABS", "ACOS", "ASIN", "COS", "EXP",  "FIX",
+    static const char *const names[FUNCTIONS] = {"ABS", "ACOS", "ASIN",  "COS", "EXP",  "FIX",
                                                  "FUP", "LN",   "ROUND", "SIN", "SQRT", "TAN"};
     const char *from = r->at;
     const int atan = read_letters(r, "ATAN"), exists = !atan && read_letters(r, "EXISTS");

@@ -91,13 +91,20 @@ static swarf_status read_head(const swarf_machine *machine, swarf_flow_word *wor
     static const struct {
         const char *name;
         int kind;
-    } keywords[] = {{"sub", SWARF_FLOW_SUB},           {"endsub", SWARF_FLOW_ENDSUB},
-                    {"return", SWARF_FLOW_RETURN},     {"call", SWARF_FLOW_CALL},
-                    {"if", SWARF_FLOW_IF},             {"elseif", SWARF_FLOW_ELSEIF},
-                    {"else", SWARF_FLOW_ELSE},         {"endif", SWARF_FLOW_ENDIF},
-                    {"while", SWARF_FLOW_WHILE},       {"endwhile", SWARF_FLOW_ENDWHILE},
-                    {"do", SWARF_FLOW_DO},             {"repeat", SWARF_FLOW_REPEAT},
-                    {"endrepeat", SWARF_FLOW_ENDREPEAT}, {"break", SWARF_FLOW_BREAK},
+    } keywords[] = {{"sub", SWARF_FLOW_SUB},
+                    {"endsub", SWARF_FLOW_ENDSUB},
+                    {"return", SWARF_FLOW_RETURN},
+                    {"call", SWARF_FLOW_CALL},
+                    {"if", SWARF_FLOW_IF},
+                    {"elseif", SWARF_FLOW_ELSEIF},
+                    {"else", SWARF_FLOW_ELSE},
+                    {"endif", SWARF_FLOW_ENDIF},
+                    {"while", SWARF_FLOW_WHILE},
+                    {"endwhile", SWARF_FLOW_ENDWHILE},
+                    {"do", SWARF_FLOW_DO},
+                    {"repeat", SWARF_FLOW_REPEAT},
+                    {"endrepeat", SWARF_FLOW_ENDREPEAT},
+                    {"break", SWARF_FLOW_BREAK},
                     {"continue", SWARF_FLOW_CONTINUE}};
     const char *end = word->line_end, *at = swarf_skip_blanks(word->word + 1, end);
     char label[SWARF_PARAMETER_NAME_MAX + 1] = "";
@@ -131,9 +138,9 @@ static swarf_status read_head(const swarf_machine *machine, swarf_flow_word *wor
     for (size_t i = 0; i < sizeof keywords / sizeof *keywords && machine->dialect->o_words; i++)
         if (strcmp(keyword, keywords[i].name) == 0) word->kind = keywords[i].kind;
     if (word->kind < 0)
-        return fail_at(machine, word, machine->dialect->o_words
-                                          ? "is no O word; sub, call, if, while, do, repeat and their kin are"
-                                          : "is no O word of this dialect; only numbers of programs are");
+        return fail_at(machine, word,
+                       machine->dialect->o_words ? "is no O word; sub, call, if, while, do, repeat and their kin are"
+                                                 : "is no O word of this dialect; only numbers of programs are");
     if (!label[0]) {
         if (word->kind != SWARF_FLOW_CALL) return fail_at(machine, word, "needs a label that is written out");
         return SWARF_OK;
@@ -151,10 +158,10 @@ typedef struct nest {
     int count;
 } nest;
 
-static const char *const begins[] = {[SWARF_FLOW_ENDSUB] = "sub",     [SWARF_FLOW_ELSEIF] = "if",
-                                     [SWARF_FLOW_ELSE] = "if",        [SWARF_FLOW_ENDIF] = "if",
-                                     [SWARF_FLOW_ENDWHILE] = "while", [SWARF_FLOW_ENDREPEAT] = "repeat",
-                                     [SWARF_FLOW_DO_WHILE] = "do"};
+static const char *const begins[] = {
+    [SWARF_FLOW_ENDSUB] = "sub", [SWARF_FLOW_ELSEIF] = "if",      [SWARF_FLOW_ELSE] = "if",
+    [SWARF_FLOW_ENDIF] = "if",   [SWARF_FLOW_ENDWHILE] = "while", [SWARF_FLOW_ENDREPEAT] = "repeat",
+    [SWARF_FLOW_DO_WHILE] = "do"};
 
 static int begin_kind(int kind)
 {
@@ -219,8 +226,8 @@ static swarf_status find_loop(swarf_machine *machine, swarf_source *source, cons
     swarf_flow_word *word = &source->words[index];
     for (int i = n->count - 1; i >= 0; i--) {
         const swarf_flow_word *first = &source->words[n->open[i]];
-        const int loop = first->kind == SWARF_FLOW_WHILE || first->kind == SWARF_FLOW_DO ||
-                         first->kind == SWARF_FLOW_REPEAT;
+        const int loop =
+            first->kind == SWARF_FLOW_WHILE || first->kind == SWARF_FLOW_DO || first->kind == SWARF_FLOW_REPEAT;
         if (loop && strcmp(first->label, word->label) == 0) {
             word->begin = n->open[i];
             return SWARF_OK;

@@ -47,7 +47,7 @@ typedef struct swarf_source {
     char *name;
     char *text;
     size_t length;
-    int owned; /**< the text is freed with the source */
+    int owned;     /**< the text is freed with the source */
     int32_t index; /**< in the program's list of sources */
     int scanned;
     swarf_flow_word *words;

@@ -61,7 +61,8 @@ typedef struct runner {
     char *folder;       /* of the program's file, NULL: none */
     size_t executed, limit;
     double reported, fraction;
-    int begun;
+    int begun;  /* something but comments was read: a second '%' is the end */
+    int titled; /* the program's own number was read */
 } runner;
 
 static double now(void)
@@ -114,8 +115,8 @@ static swarf_status try_file(runner *r, const char *folder, size_t length, const
     *out = NULL;
     for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
         char path[4096];
-        const int size = snprintf(path, sizeof path, "%.*s%s%s.%s", (int)length, folder, length ? "/" : "", label,
-                                  suffixes[i]);
+        const int size =
+            snprintf(path, sizeof path, "%.*s%s%s.%s", (int)length, folder, length ? "/" : "", label, suffixes[i]);
         struct stat status;
         if (size < 0 || (size_t)size >= sizeof path || stat(path, &status) != 0 || !S_ISREG(status.st_mode)) continue;
         for (size_t k = 0; k < r->source_count; k++)
@@ -196,18 +197,28 @@ static swarf_status fail_word(const runner *r, const swarf_flow_word *word, cons
     return swarf_gcode_fail(&r->machine, &where, "%s", text);
 }
 
+/* Behind blanks and comments. */
+static const char *skip_comments(const char *at, const char *end)
+{
+    for (at = swarf_skip_blanks(at, end); at < end && *at == '('; at = swarf_skip_blanks(at, end)) {
+        while (at < end && *at != ')') at++;
+        if (at < end) at++;
+    }
+    return at < end && *at == ';' ? end : at;
+}
+
 /* Nothing but comments may follow. */
 static swarf_status check_rest(const runner *r, const swarf_flow_word *word, const char *at)
 {
-    at = swarf_skip_blanks(at, word->line_end);
-    if (at == word->line_end || *at == '(' || *at == ';') return SWARF_OK;
+    at = skip_comments(at, word->line_end);
+    if (at == word->line_end) return SWARF_OK;
     const swarf_word where = {0.0, at, 1, 0};
     return swarf_gcode_fail(&r->machine, &where, "does not belong into a line of an O word");
 }
 
 static swarf_status read_value(runner *r, const swarf_flow_word *word, double *out)
 {
-    const char *at = swarf_skip_blanks(word->rest, word->line_end);
+    const char *at = skip_comments(word->rest, word->line_end);
     if (at == word->line_end || *at != '[') return fail_word(r, word, "needs a value in brackets");
     SWARF_TRY(swarf_value_read(&r->machine, &at, word->line_end, out));
     return check_rest(r, word, at);
@@ -290,9 +301,9 @@ static swarf_status call(runner *r, const swarf_flow_word *word)
     char label[SWARF_PARAMETER_NAME_MAX + 1];
     double arguments[ARGUMENTS_MAX];
     int count = 0;
-    const char *at = swarf_skip_blanks(word->rest, word->line_end);
+    const char *at = skip_comments(word->rest, word->line_end);
     SWARF_TRY(label_of(r, word, label, sizeof label));
-    for (; at < word->line_end && *at == '['; at = swarf_skip_blanks(at, word->line_end)) {
+    for (; at < word->line_end && *at == '['; at = skip_comments(at, word->line_end)) {
         if (count == ARGUMENTS_MAX) return fail_word(r, word, "has more than 30 arguments");
         SWARF_TRY(swarf_value_read(&r->machine, &at, word->line_end, &arguments[count++]));
     }
@@ -316,9 +327,8 @@ static swarf_status call(runner *r, const swarf_flow_word *word)
 static swarf_status return_from(runner *r, const swarf_flow_word *word)
 {
     const frame *f = top(r);
-    if (!f->entry || f->numbered || strcmp(f->entry->label, word->label) != 0)
-        return fail_word(r, word, "is in no call of its subroutine");
-    const char *at = swarf_skip_blanks(word->rest, word->line_end);
+    if (!f->entry || f->numbered) return fail_word(r, word, "is in no call of its subroutine");
+    const char *at = skip_comments(word->rest, word->line_end);
     if (at < word->line_end && *at == '[') {
         double value = 0.0;
         SWARF_TRY(read_value(r, word, &value));
@@ -411,7 +421,8 @@ static swarf_status run_flow(runner *r, const char *at)
     double value = 0.0;
     switch ((swarf_flow_kind)word->kind) {
     case SWARF_FLOW_PROGRAM:
-        if (r->begun) return fail_word(r, word, "is where the program runs into another one; end it by M30 or M99");
+        if (r->titled) return fail_word(r, word, "is where the program runs into another one; end it by M30 or M99");
+        r->titled = 1;
         return check_rest(r, word, word->rest);
     case SWARF_FLOW_SUB: go_on_after(r, end); return SWARF_OK;
     case SWARF_FLOW_ENDSUB:
@@ -488,10 +499,8 @@ static swarf_status run_line(runner *r)
     SWARF_TRY(swarf_block_read(&r->machine, text, stop, block));
     if (block->skipped) return SWARF_OK;
     if (block->flow) {
-        const int title = !r->begun;
-        SWARF_TRY(run_flow(r, block->flow));
-        r->begun |= !title || r->depth > 0;
-        return SWARF_OK;
+        r->begun = 1;
+        return run_flow(r, block->flow);
     }
     if (block->percent) {
         if (!r->begun) { /* the first; what comes before it is a title */
@@ -502,9 +511,7 @@ static swarf_status run_line(runner *r)
         r->machine.ended = 1;
         return SWARF_OK;
     }
-    if (!has_words(block)) {
-        return block->comment ? swarf_machine_comment(&r->machine, block) : SWARF_OK;
-    }
+    if (!has_words(block)) return block->comment ? swarf_machine_comment(&r->machine, block) : SWARF_OK;
     r->begun = 1;
     SWARF_TRY(swarf_machine_run(&r->machine, block));
     if (r->machine.request == SWARF_REQUEST_NONE) return SWARF_OK;
@@ -572,8 +579,8 @@ static swarf_status read_text(const char *text, size_t length, const char *name,
 static swarf_status check_options(const swarf_gcode_options **options, const swarf_gcode_options *defaults)
 {
     if (!*options) *options = defaults;
-    SWARF_REQUIRE((*options)->size == sizeof **options, "gcode: options of %zu bytes; take swarf_gcode_options_default()",
-                  (*options)->size);
+    SWARF_REQUIRE((*options)->size == sizeof **options,
+                  "gcode: options of %zu bytes; take swarf_gcode_options_default()", (*options)->size);
     return SWARF_OK;
 }
 

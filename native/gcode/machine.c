@@ -204,8 +204,9 @@ static swarf_status run_modes(swarf_machine *machine, swarf_block *block)
     swarf_modes *modes = &machine->modes;
     const swarf_word *word = swarf_block_group(block, SWARF_GROUP_PLANE);
     if (word) {
-        const swarf_plane plane =
-            word->value == 170.0 ? SWARF_PLANE_XY : word->value == 180.0 ? SWARF_PLANE_ZX : SWARF_PLANE_YZ;
+        const swarf_plane plane = word->value == 170.0   ? SWARF_PLANE_XY
+                                  : word->value == 180.0 ? SWARF_PLANE_ZX
+                                                         : SWARF_PLANE_YZ;
         if (machine->comp.side && plane != modes->plane)
             return swarf_gcode_fail(machine, word, "changes the plane under cutter compensation; write G40 first");
         if (plane != modes->plane) machine->cycle.active = 0; /* its R and Z lay along another axis */

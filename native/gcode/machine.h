@@ -41,12 +41,12 @@ typedef struct swarf_modes {
 
 /** What drilling cycles remember from line to line, until a line leaves them. */
 typedef struct swarf_cycle {
-    int active;      /**< in a series of cycles */
-    int last;        /**< the cycle that `known` belongs to */
-    uint32_t known;  /**< letters Z R Q P given in this series */
-    double z, r, q;  /**< as written, mm */
-    double seconds;  /**< P */
-    double initial;  /**< height the series began at, for G98; NAN if that was unknown */
+    int active;     /**< in a series of cycles */
+    int last;       /**< the cycle that `known` belongs to */
+    uint32_t known; /**< letters Z R Q P given in this series */
+    double z, r, q; /**< as written, mm */
+    double seconds; /**< P */
+    double initial; /**< height the series began at, for G98; NAN if that was unknown */
 } swarf_cycle;
 
 /** One move on its way to the program. */
@@ -105,10 +105,10 @@ struct swarf_machine {
     swarf_modes modes;
     double position[SWARF_AXES];
 
-    int system;               /**< 1 G54 ... 9 G59.3 */
-    double work[SWARF_AXES];  /**< its origin */
-    double turn_deg;          /**< its rotation */
-    double shift[SWARF_AXES]; /**< G92 and G52 in force */
+    int system;                /**< 1 G54 ... 9 G59.3 */
+    double work[SWARF_AXES];   /**< its origin */
+    double turn_deg;           /**< its rotation */
+    double shift[SWARF_AXES];  /**< G92 and G52 in force */
     double offset[SWARF_AXES]; /**< tool offset in force */
     double length[3];          /**< offset of the tool in the spindle */
     swarf_bend bend;
@@ -126,7 +126,7 @@ struct swarf_machine {
     int has_table;
     int selected; /**< by T, -1 for none */
     swarf_section section, settled;
-    int is_settled; /**< the program's section is `settled` */
+    int is_settled;      /**< the program's section is `settled` */
     uint32_t *tool_uses; /**< by tool number: M6 so far, for the operations' names */
     size_t tool_room_used;
 
@@ -145,7 +145,7 @@ struct swarf_machine {
     swarf_request request;
     int call_number, call_repeats;
     swarf_word call_word;
-    uint32_t warned; /**< SWARF_WARNED_... */
+    uint32_t warned;        /**< SWARF_WARNED_... */
     uint32_t systems_moved; /**< bit per work offset that motion used */
     int ended;
 };
@@ -216,6 +216,8 @@ swarf_status swarf_machine_turn(swarf_machine *machine, const swarf_word *word, 
 swarf_status swarf_machine_dwell(swarf_machine *machine, const swarf_word *word, double seconds);
 /** Put a step into the program. `word` is what an error points at. */
 swarf_status swarf_machine_emit(swarf_machine *machine, const swarf_word *word, const swarf_step *step);
+/** What has to be so before a first move, or after offsets changed: the tip may be elsewhere without a motion. */
+swarf_status swarf_machine_prepare(swarf_machine *machine, const swarf_word *word, uint32_t line);
 /** A step with what the machine's state says of it. */
 swarf_step swarf_machine_step(const swarf_machine *machine, swarf_move_kind kind, double value);
 /** Read the axis words of a straight move into `end`. `any`: some axis was given. */

@@ -42,9 +42,9 @@ static swarf_status push(swarf_machine *machine, swarf_move_kind kind, const dou
     return SWARF_OK;
 }
 
-/* What has to be so before a first move, or after offsets changed. */
-static swarf_status prepare(swarf_machine *machine, const swarf_word *word, uint32_t line)
+swarf_status swarf_machine_prepare(swarf_machine *machine, const swarf_word *word, uint32_t line)
 {
+    if (!machine->frame_stale) return SWARF_OK;
     machine->frame_fixed = 1;
     machine->frame_stale = 0;
     const uint32_t bit = 1u << machine->system;
@@ -65,7 +65,6 @@ static swarf_status prepare(swarf_machine *machine, const swarf_word *word, uint
                                    "simulated where that puts it",
                                    machine->offset[2], (int)machine->section.tool, machine->length[2]));
     }
-    if (machine->comp.side || machine->comp.leaving) return SWARF_OK; /* the tool is beside the programmed place */
     double here[3];
     swarf_machine_tip(machine, machine->position, here);
     int moved = 0;
@@ -111,7 +110,7 @@ swarf_status swarf_machine_emit(swarf_machine *machine, const swarf_word *word, 
     SWARF_TRY(settle_section(machine, &step->section));
     if (step->kind == SWARF_MOVE_DWELL)
         return swarf_program_add_event(machine->program, SWARF_MOVE_DWELL, step->value, step->line);
-    if (machine->frame_stale) SWARF_TRY(prepare(machine, word, step->line));
+    SWARF_TRY(swarf_machine_prepare(machine, word, step->line));
     double end[3];
     swarf_machine_tip(machine, step->end, end);
     SWARF_TRY(check_end(machine, word, end));
@@ -264,8 +263,7 @@ swarf_status swarf_machine_straight(swarf_machine *machine, swarf_block *block, 
     SWARF_TRY(swarf_machine_target(machine, block, end, &any));
     const swarf_move_kind kind = machine->modes.motion == 0 ? SWARF_MOVE_RAPID : SWARF_MOVE_FEED;
     if (kind == SWARF_MOVE_FEED) {
-        const double length =
-            machine->modes.feed_mode == 930 ? swarf_machine_distance(machine->position, end) : 0.0;
+        const double length = machine->modes.feed_mode == 930 ? swarf_machine_distance(machine->position, end) : 0.0;
         SWARF_TRY(swarf_machine_feed(machine, block, word, length, &feed));
     }
     return swarf_machine_go(machine, word, kind, end, feed);

@@ -75,8 +75,9 @@ static swarf_status run_length(swarf_machine *machine, swarf_block *block)
             axes = 1;
         }
         if (code == 431 ? !axes : (axes != 0) == (h != NULL))
-            return swarf_gcode_fail(machine, word, code == 431 ? "needs the offset, by axis words"
-                                                               : "needs H, a tool's number, or axis words, not both");
+            return swarf_gcode_fail(machine, word,
+                                    code == 431 ? "needs the offset, by axis words"
+                                                : "needs H, a tool's number, or axis words, not both");
     }
     if (code == 430 || h) SWARF_TRY(offset_of(machine, word, h, number, offset));
     if (code == 432)
@@ -95,8 +96,8 @@ static swarf_status run_scale(swarf_machine *machine, swarf_block *block)
     if (!word) return SWARF_OK;
     SWARF_TRY(need_no_compensation(machine, word));
     swarf_bend bend = machine->bend;
-    const int by_p = swarf_block_has(block, 'P'), by_ijk = block->given & (SWARF_LETTER('I') | SWARF_LETTER('J') |
-                                                                           SWARF_LETTER('K'));
+    const int by_p = swarf_block_has(block, 'P'),
+              by_ijk = block->given & (SWARF_LETTER('I') | SWARF_LETTER('J') | SWARF_LETTER('K'));
     for (int k = 0; k < 3; k++) bend.factor[k] = 1.0, bend.scale_centre[k] = 0.0;
     if (word->value == 510.0) {
         for (int k = 0; k < 3; k++) {
@@ -133,8 +134,7 @@ static swarf_status run_turn(swarf_machine *machine, swarf_block *block)
         if (!swarf_block_has(block, 'R')) return swarf_gcode_fail(machine, word, "needs R, the angle in degrees");
         bend.angle = swarf_block_take(block, 'R')->value;
         for (int k = 0; k < 2; k++) {
-            const char letter = swarf_block_has(block, "AB"[k]) && machine->dialect->k_repeats == 0 ? "AB"[k]
-                                                                                                  : "XY"[k];
+            const char letter = swarf_block_has(block, "AB"[k]) && machine->dialect->k_repeats == 0 ? "AB"[k] : "XY"[k];
             bend.turn_centre[k] = machine->position[k];
             if (swarf_block_has(block, letter))
                 SWARF_TRY(swarf_machine_length(machine, swarf_block_take(block, letter), &bend.turn_centre[k]));

@@ -64,8 +64,8 @@ static swarf_named *find(const swarf_named_list *names, size_t from, const char 
 const double *swarf_parameters_find(const swarf_parameters *parameters, const char *name)
 {
     const int global = name[0] == '_';
-    const swarf_named *found = find(global ? &parameters->globals : &parameters->locals,
-                                    global ? 0 : parameters->base, name, hash_of(name));
+    const swarf_named *found =
+        find(global ? &parameters->globals : &parameters->locals, global ? 0 : parameters->base, name, hash_of(name));
     return found ? &found->value : NULL;
 }
 

@@ -32,8 +32,7 @@ double swarf_machine_parameter(const swarf_machine *machine, int index)
 {
     if (index >= 5021 && index <= 5029) return absolute_of(machine, index - 5021);
     if (index >= 5420 && index <= 5428) return in_units(machine, index - 5420, machine->position[index - 5420]);
-    if (index >= 5061 && index <= 5069)
-        return in_units(machine, index - 5061, machine->parameters.numbered[index]);
+    if (index >= 5061 && index <= 5069) return in_units(machine, index - 5061, machine->parameters.numbered[index]);
     if (index >= 5081 && index <= 5089) return in_units(machine, index - 5081, machine->offset[index - 5081]);
     if (index == 5400) return machine->section.tool < 0 ? 0.0 : machine->section.tool;
     if (index >= 5401 && index <= 5413) return tool_value(machine, index);

@@ -53,7 +53,8 @@ static swarf_status go_along(swarf_machine *machine, swarf_block *block, const s
 swarf_status swarf_machine_spline(swarf_machine *machine, swarf_block *block, const swarf_word *word)
 {
     const int cubic = machine->modes.motion == 50;
-    if (machine->modes.plane != SWARF_PLANE_XY) return swarf_gcode_fail(machine, word, "lies in the plane XY only: G17");
+    if (machine->modes.plane != SWARF_PLANE_XY)
+        return swarf_gcode_fail(machine, word, "lies in the plane XY only: G17");
     if (machine->comp.side) return swarf_gcode_fail(machine, word, "cannot be under cutter compensation");
     for (int k = 2; k < SWARF_AXES; k++)
         if (swarf_block_has(block, swarf_axis_letter(k)))

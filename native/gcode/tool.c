@@ -121,7 +121,8 @@ static swarf_status read_row(table *t, const char *at, const char *end, int line
                               line, (size_t)(word - begin) + 1, letter);
     }
     if (row.number < 0) {
-        for (at = begin; at < end && (*at == ' ' || *at == '\t' || *at == '\r'); at++) {}
+        for (at = begin; at < end && (*at == ' ' || *at == '\t' || *at == '\r'); at++) {
+        }
         if (at == end || *at == ';') return SWARF_OK;
         return swarf_fail(SWARF_ERROR_FORMAT, "%s:%d:1: error: the row has no T, the tool's number", t->path, line);
     }

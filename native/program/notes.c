@@ -52,8 +52,8 @@ static swarf_status keep_name(swarf_notes *notes, const char *name, const char *
         *out = notes->names[notes->name_count - 1];
         return SWARF_OK;
     }
-    SWARF_TRY(swarf_array_reserve((void **)&notes->names, &notes->name_room, notes->name_count + 1,
-                                  sizeof *notes->names));
+    SWARF_TRY(
+        swarf_array_reserve((void **)&notes->names, &notes->name_room, notes->name_count + 1, sizeof *notes->names));
     char *copy = copy_of(name);
     if (!copy) return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
     *out = notes->names[notes->name_count++] = copy;

@@ -14,12 +14,12 @@
 #include <string.h>
 
 typedef struct way {
-    int moves;        /* else nothing moves, and everything stands still */
-    double length;    /* mm, or degrees */
-    double speed;     /* per second */
-    double acceleration; /* per second squared; INFINITY: at once */
+    int moves;            /* else nothing moves, and everything stands still */
+    double length;        /* mm, or degrees */
+    double speed;         /* per second */
+    double acceleration;  /* per second squared; INFINITY: at once */
     double in[3], out[3]; /* directions, unit; zero where none can be passed on */
-    double pause;     /* seconds without motion */
+    double pause;         /* seconds without motion */
 } way;
 
 swarf_machine_limits swarf_machine_limits_default(void)
@@ -122,7 +122,7 @@ static double corner_speed(const way *before, const way *after, double junction)
     }
     if (!(sum > 0.0)) return 0.0;
     const double most = least(before->speed, after->speed);
-    if (cosine < -0.999999) return most; /* straight on */
+    if (cosine < -0.999999) return most;                       /* straight on */
     const double half = sqrt(fmax(0.0, 0.5 * (1.0 - cosine))); /* sine of half the angle between them */
     const double acceleration = least(before->acceleration, after->acceleration);
     if (half >= 1.0) return most;
@@ -156,7 +156,7 @@ static swarf_status check_limits(const swarf_machine_limits *limits)
                       "time: %c must have a rapid and a feed above 0 mm/min", "XYZ"[k]);
         SWARF_REQUIRE(limits->acceleration_mm_s2[k] >= 0.0 && limits->acceleration_mm_s2[k] <= 1e9,
                       "time: the acceleration of %c is %g; 0 (at once) or above is possible", "XYZ"[k],
-                      limits->acceleration_mm_s2[k]);
+                      limits -> acceleration_mm_s2[k]);
     }
     SWARF_REQUIRE(limits->junction_mm >= 0.0 && limits->junction_mm <= 1e3, "time: junctions of %g mm",
                   limits->junction_mm);

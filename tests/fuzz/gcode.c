@@ -28,25 +28,57 @@ static void check_path(const swarf_program *program, size_t index)
     }
 }
 
+/* What is not in the text is taken from its length, so that mutations change it as well. */
+static swarf_gcode_options options_for(size_t size)
+{
+    static const swarf_gcode_tool tools[] = {{1, 0, {0, 0, 10}, 6}, {2, 0, {1, 2, 20}, -1}};
+    swarf_gcode_options options = swarf_gcode_options_default();
+    options.dialect = (swarf_gcode_dialect)(size % 5 % 4);
+    options.block_delete = size / 5 % 2 == 1;
+    if (size / 10 % 2) {
+        options.tools = tools;
+        options.tool_count = sizeof tools / sizeof *tools;
+    }
+    if (size / 20 % 2)
+        for (int k = 0; k < 3; k++) options.start[k] = 0.0;
+    options.line_limit = 20000;
+    return options;
+}
+
 int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size)
 {
     swarf_program *program = NULL;
-    const swarf_status status = swarf_gcode_read((const char *)data, size, "fuzz.nc", NULL, NULL, &program);
-    if (status != SWARF_OK) {
-        require(status == SWARF_ERROR_FORMAT && program == NULL);
+    swarf_gcode_options options = options_for(size);
+    require(swarf_notes_create(&options.notes) == SWARF_OK);
+    const swarf_status status = swarf_gcode_read((const char *)data, size, "fuzz.nc", &options, NULL, &program);
+    const size_t notes = swarf_notes_count(options.notes);
+    for (size_t i = 0; i < notes; i++) require(strlen(swarf_notes_get(options.notes, i).text) < 500);
+    if (status == SWARF_ERROR_FORMAT) {
+        require(notes > 0 && swarf_notes_get(options.notes, notes - 1).kind == SWARF_NOTE_ERROR);
         require(strncmp(swarf_error_last(), "fuzz.nc:", 8) == 0);
+    }
+    swarf_notes_destroy(options.notes);
+    if (status != SWARF_OK) {
+        require((status == SWARF_ERROR_FORMAT || status == SWARF_ERROR_MEMORY) && program == NULL);
         return 0;
     }
     const size_t count = swarf_program_move_count(program);
     const size_t step = count / 10000 + 1; /* expanded cycles may be many moves alike */
     for (size_t i = 0; i < count; i += step) {
         const swarf_move *move = &swarf_program_moves(program)[i];
+        double from[6], to[6];
         require(swarf_move_get_section(move) < swarf_program_section_count(program));
         require(move->arc < (int32_t)swarf_program_arc_count(program));
         require(isfinite(move->feed_mm_min) && move->feed_mm_min >= 0.0f);
+        (void)swarf_program_move_axes(program, i, from, to);
+        for (int k = 0; k < 6; k++) require(isfinite(from[k]) && isfinite(to[k]));
         check_path(program, i);
     }
     require(isfinite(swarf_program_seconds(program, 1000.0)));
+    double *seconds = malloc((count + 1) * sizeof *seconds);
+    require(seconds != NULL && swarf_program_times(program, NULL, seconds) == SWARF_OK);
+    for (size_t i = 0; i < count; i += step) require(isfinite(seconds[i]) && seconds[i] >= 0.0);
+    free(seconds);
     swarf_program_release(program);
     return 0;
 }

@@ -11,17 +11,20 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Known start, so that moves are what they seem. The text lies in a block of its own length: a reader that goes on
- * past the end is seen by the address sanitizer. */
+/* Known start, a feed and G98, so that moves are what they seem; the line that says so is numbered 0 below. The text
+ * lies in a block of its own length: a reader that goes on past the end is seen by the address sanitizer. */
+static const char head[] = "F100 G98\n";
+
 static swarf_status read_bytes(const char *text, size_t length, swarf_program **out)
 {
-    char *copy = malloc(length ? length : 1);
+    char *copy = malloc(sizeof head - 1 + length);
     if (!copy) return SWARF_ERROR_MEMORY;
-    memcpy(copy, text, length);
+    memcpy(copy, head, sizeof head - 1);
+    memcpy(copy + sizeof head - 1, text, length);
     swarf_gcode_options options = swarf_gcode_options_default();
     options.start[0] = options.start[1] = 0;
     options.start[2] = 10;
-    const swarf_status status = swarf_gcode_read(copy, length, "part.nc", &options, NULL, out);
+    const swarf_status status = swarf_gcode_read(copy, sizeof head - 1 + length, "part.nc", &options, NULL, out);
     free(copy);
     return status;
 }
@@ -34,12 +37,20 @@ static swarf_program *read_ok(const char *text)
     return program;
 }
 
-/* The text fails and the message is or contains `part`. */
+/* The text fails and the message is or contains `part`; lines are counted without the head. */
 static void refuse(const char *text, const char *part)
 {
     swarf_program *program = NULL;
-    if (!CHECK_FAILS(read_bytes(text, strlen(text), &program), SWARF_ERROR_FORMAT, part))
-        fprintf(stderr, "  in: %s\n", text);
+    int ok = CHECK(read_bytes(text, strlen(text), &program) == SWARF_ERROR_FORMAT);
+    char message[800] = "";
+    const char *last = swarf_error_last(), *place = strchr(last, ':');
+    if (ok && place) {
+        char *rest;
+        const unsigned long line = strtoul(place + 1, &rest, 10);
+        snprintf(message, sizeof message, "part.nc:%lu%s", line - 1, rest);
+    }
+    ok = CHECK(strstr(message, part) != NULL) && ok;
+    if (!ok) fprintf(stderr, "  in: %s\n  wanted: %s\n  got: %s\n", text, part, message);
     CHECK(program == NULL);
     swarf_program_release(program);
 }
@@ -119,14 +130,15 @@ static void test_numbers(void)
         swarf_program_release(program);
     }
     refuse("G0 X", "part.nc:1:4: error: 'X' has no number");
-    refuse("G0 X-", "'X' has no number");
+    refuse("G0 X-", "expected a value at the end of the line");
     refuse("G0 X.", "'X' has no number");
-    refuse("G0 X--1", "'X' has no number");
+    refuse("G0 X-+", "expected a value");
     refuse("G0 X1.2.3", "part.nc:1:8: error: '.' begins no word");
-    refuse("G0 X1e400", "part.nc:1:6: error: 'e400' is no word, and numbers take no exponent");
+    refuse("G0 X1e400",
+           "part.nc:1:6: error: 'e400' is not used by this line; E belongs to M66 to M68 (numbers take no");
     refuse("G0 X9999999999999", "part.nc:1:4: error: 'X9999999999999' is out of range");
     refuse("G0 X1000000000000000000000000000000000000000", "is out of range");
-    refuse("G0 Xnan", "'X' has no number");
+    refuse("G0 Xnan", "'n' is no value");
     refuse("G20 G0 X40000", "'X40000' is 1.016e+06 mm; at most 1e+06 is possible");
     refuse("G91 G0 X900000\nX900000", "part.nc:2:1: error: 'X900000' leads to X 1.8e+06 mm");
 }
@@ -135,14 +147,12 @@ static void test_text(void)
 {
     expect("", "");
     expect("\n\n \t\n", "");
-    expect("%\n%\nG41 is never read", "");
-    expect("%\nG0 X1\n%\nnonsense", "r", 1.0, 0.0, 10.0);
-    expect("(title)\n%\nG0 X1\n%", "r", 1.0, 0.0, 10.0);
+    expect("%\nG41 is never read", "");
+    expect("%\nnonsense", "");
     expect("G0 X1\n%\nnonsense", "r", 1.0, 0.0, 10.0);
     expect("G0 X1\nM30\nnonsense", "r", 1.0, 0.0, 10.0);
     expect("G0 X1 M2\nnonsense", "r", 1.0, 0.0, 10.0);
     expect("g0x1y2", "r", 1.0, 2.0, 10.0);
-    expect("\xef\xbb\xbfG0 X1", "r", 1.0, 0.0, 10.0);
     expect("G0X1\r\nY2\rZ3\n\rX4", "rrrr", 1.0, 0.0, 10.0, 1.0, 2.0, 10.0, 1.0, 2.0, 3.0, 4.0, 2.0, 3.0);
     expect("N10 G0 (go) X1 (Y5) ; Y6\n(a)(b)\n;G41\nN20 (c) Y2", "rr", 1.0, 0.0, 10.0, 1.0, 2.0, 10.0);
     expect("/G0 X1\n / N5 Y2", "rr", 1.0, 0.0, 10.0, 1.0, 2.0, 10.0);
@@ -153,9 +163,9 @@ static void test_text(void)
     refuse("G0 X1 %", "'%' must stand alone");
     refuse("% G0", "part.nc:1:1: error: '%' must stand alone");
     refuse("\r\n\r\nG0 Q", "part.nc:3:4:");
-    refuse("G0 X#1", "'X' has no number");
-    refuse("#1=5", "'#' parameters and expressions are not supported");
-    refuse("G0 [1]", "expressions are not supported");
+    refuse("G0 X#<a>", "'#<a>' is a parameter that has no value yet");
+    refuse("#1", "'#1' does nothing here; expected '='");
+    refuse("G0 [1]", "'[' stands alone");
     refuse("\x7f"
            "ELF\x01\x02",
            "part.nc:1:1: error: '?' is byte 0x7f; this is not G-code text");
@@ -181,12 +191,12 @@ static void test_modes(void)
     expect("G1 X0 Y0 Z10 F100", "f", 0.0, 0.0, 10.0);
     expect("M0\nM1\nM3 S1000 M8 M7\nM9\nM5", "");
 
-    swarf_program *program = read_ok("G20 F10 G1 X1\nG21 F100 X2\nG0 X3\nG1 G4 P2.5 X4");
+    swarf_program *program = read_ok("G20\nF10 G1 X1\nG21\nF100 X2\nG0 X3\nG1 G4 P2.5 X4");
     const swarf_move *moves = swarf_program_moves(program);
     if (CHECK(swarf_program_move_count(program) == 5)) {
         CHECK_NEAR((double)moves[0].feed_mm_min, 254, 1e-6);
         CHECK(moves[1].feed_mm_min == 100.0f && moves[2].feed_mm_min == 0.0f && moves[3].feed_mm_min == 2.5f);
-        CHECK(moves[4].feed_mm_min == 100.0f && moves[0].line == 1 && moves[4].line == 4);
+        CHECK(moves[4].feed_mm_min == 100.0f && moves[0].line == 3 && moves[4].line == 7);
     }
     swarf_program_release(program);
 
@@ -208,7 +218,7 @@ static void test_modes(void)
     refuse("M3.5", "'M3.5' is no code");
     refuse("G0 X1 I5", "part.nc:1:7: error: 'I5' is not used by this line; I belongs to G2 and G3");
     refuse("G1 X1 R5", "'R5' is not used");
-    refuse("G1 X1 L5", "L belongs to cycles");
+    refuse("G1 X1 L5", "L belongs to cycles, G10 and M98");
     refuse("G1 X1 P5", "'P5' is not used");
     refuse("G1 X1 Q5", "'Q5' is not used");
     refuse("G0 H1", "H belongs to G43");
@@ -217,34 +227,109 @@ static void test_modes(void)
 /* Every G and M code there is: accepted or refused by name, never ignored. */
 static void test_all_codes(void)
 {
-    static const int g[] = {0,   10,  20,  30,  40,  170, 180, 190, 200, 210, 400, 430, 490, 540, 610, 611,
-                            640, 730, 800, 810, 820, 830, 850, 890, 900, 901, 910, 911, 940, 980, 990};
-    static const int m[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30};
-    for (int code = 0; code < 10000; code++) {
+    static const struct {
+        int code; /* times 10 */
+        const char *words;
+    } g[] = {{0, ""},
+             {10, ""},
+             {20, ""},
+             {30, ""},
+             {40, "P1"},
+             {50, "X1 I1 J0 P1 Q0"},
+             {51, "X1 I1"},
+             {80, ""},
+             {100, "L2 P1"},
+             {170, ""},
+             {180, ""},
+             {190, ""},
+             {200, ""},
+             {210, ""},
+             {280, ""},
+             {281, ""},
+             {300, ""},
+             {301, ""},
+             {400, ""},
+             {410, ""},
+             {411, "D1"},
+             {420, ""},
+             {421, "D1"},
+             {430, ""},
+             {431, "Z1"},
+             {432, "Z1"},
+             {490, ""},
+             {520, "X1"},
+             {530, "G0 X1"},
+             {540, ""},
+             {550, ""},
+             {560, ""},
+             {570, ""},
+             {580, ""},
+             {590, ""},
+             {591, ""},
+             {592, ""},
+             {593, ""},
+             {610, ""},
+             {611, ""},
+             {640, ""},
+             {730, "X1 Z1 R2 Q1"},
+             {800, ""},
+             {810, "X1 Z1 R2"},
+             {820, "X1 Z1 R2 P1"},
+             {830, "X1 Z1 R2 Q1"},
+             {850, "X1 Z1 R2"},
+             {890, "X1 Z1 R2 P1"},
+             {900, ""},
+             {901, ""},
+             {910, ""},
+             {911, ""},
+             {920, "X1"},
+             {921, ""},
+             {922, ""},
+             {923, ""},
+             {930, ""},
+             {940, ""},
+             {950, ""},
+             {960, "S1"},
+             {970, ""},
+             {980, ""},
+             {990, ""},
+             {840, "M3 X1 Z1 R2"},
+             {740, "M4 X1 Z1 R2"},
+             {860, "M3 X1 Z1 R2 P1"},
+             {382, "X1"},
+             {383, "X1"},
+             {384, "X1"},
+             {385, "X1"}};
+    static const struct {
+        int code;
+        const char *words;
+    } m[] = {{0, ""},    {1, ""},    {2, ""},    {3, ""},       {4, ""},       {5, ""},       {6, ""},
+             {7, ""},    {8, ""},    {9, ""},    {19, ""},      {30, ""},      {48, ""},      {49, ""},
+             {50, ""},   {51, ""},   {52, ""},   {53, ""},      {60, ""},      {61, "Q1"},    {62, "P1"},
+             {63, "P1"}, {64, "P1"}, {65, "P1"}, {66, "P1 L0"}, {67, "E0 Q1"}, {68, "E0 Q1"}, {70, ""},
+             {71, ""},   {73, ""},   {99, ""},   {100, ""},     {199, "P1 Q2"}};
+    for (int code = 0; code < 1100; code++) {
         char line[64], quoted[32];
-        int known = 0;
-        for (size_t i = 0; i < sizeof g / sizeof *g; i++) known |= g[i] == code;
-        const int cycle = code == 730 || (code > 800 && code < 900);
-        snprintf(line, sizeof line, "G%d.%d %s", code / 10, code % 10,
-                 cycle        ? code == 730 || code == 830   ? "X1 Z1 R2 Q1"
-                                : code == 820 || code == 890 ? "X1 Z1 R2 P1"
-                                                             : "X1 Z1 R2"
-                 : code == 40 ? "P1"
-                              : "");
+        const char *words = NULL;
+        for (size_t i = 0; i < sizeof g / sizeof *g; i++)
+            if (g[i].code == code) words = g[i].words;
+        if (code == 330 || code == 331) continue; /* no feed word may stand before them: tested elsewhere */
+        snprintf(line, sizeof line, "G%d.%d %s", code / 10, code % 10, words ? words : "");
         snprintf(quoted, sizeof quoted, "'G%d.%d'", code / 10, code % 10);
         swarf_program *program = NULL;
-        if (known)
+        if (words)
             CHECK_OK(read_bytes(line, strlen(line), &program));
         else
             CHECK_FAILS(read_bytes(line, strlen(line), &program), SWARF_ERROR_FORMAT, quoted);
         swarf_program_release(program);
-        if (code >= 1000) continue;
-        known = 0;
-        for (size_t i = 0; i < sizeof m / sizeof *m; i++) known |= m[i] == code;
-        snprintf(line, sizeof line, "T1 M%d", code);
+        if (code >= 300) continue;
+        words = code > 99 && code < 200 ? "" : NULL;
+        for (size_t i = 0; i < sizeof m / sizeof *m; i++)
+            if (m[i].code == code) words = m[i].words;
+        snprintf(line, sizeof line, "T1 M%d %s", code, words ? words : "");
         snprintf(quoted, sizeof quoted, "'M%d'", code);
         program = NULL;
-        if (known)
+        if (words)
             CHECK_OK(read_bytes(line, strlen(line), &program));
         else
             CHECK_FAILS(read_bytes(line, strlen(line), &program), SWARF_ERROR_FORMAT, quoted);
@@ -253,18 +338,17 @@ static void test_all_codes(void)
     /* every letter by itself */
     for (char letter = 'A'; letter <= 'Z'; letter++) {
         const char line[] = {letter, '1', 0};
-        if (strchr("FGMNST", letter))
+        if (strchr("FMNST", letter) || letter == 'G' || letter == 'O')
             expect(line, "");
         else
             refuse(line, line);
     }
-    refuse("G41 D1",
-           "part.nc:1:1: error: 'G41' cutter compensation is not supported; post the tool centre's path (G40)");
-    refuse("G28", "reference positions");
-    refuse("G55", "only work offset G54");
-    refuse("G84 X1 Z1 R2", "tapping");
-    refuse("G0 A90", "'A90' rotary axes are not supported");
-    refuse("O100 sub", "'O100' program numbers and subroutines");
+    refuse("G41 D1", "part.nc:1:5: error: 'D1' needs the diameter of tool T1; give a tool table");
+    refuse("G76", "'G76' is a cycle of lathes; this is a milling simulation");
+    refuse("G7", "diameter mode of lathes");
+    refuse("G5.2", "NURBS");
+    refuse("G87", "back boring");
+    refuse("G84 X1 Z1 R2", "'G84' taps a right-handed thread: the spindle must turn by M3");
 }
 
 static void test_tools(void)
@@ -300,14 +384,14 @@ static void test_tools(void)
     refuse("T1.5", "'T1.5' must be a whole number");
     refuse("T-1", "'T-1' must be a whole number from 0 to 99999");
     refuse("T100000", "must be a whole number");
-    refuse("T1 M6\nG43 H2", "part.nc:2:5: error: 'H2' is not the offset of the loaded tool; H1 is");
+    refuse("T1 M6\nG43 H2", "part.nc:2:5: error: 'H2' is not the offset of the loaded tool, H1 is");
     refuse("G43 H2", "no tool is loaded");
 }
 
 static void test_unknown(void)
 {
     swarf_program *program = NULL;
-    const char text[] = "G0 X1\nZ5\nG1 Y2\nX2";
+    const char text[] = "G0 X1\nZ5\nG1 F9 Y2\nX2";
     CHECK_OK(swarf_gcode_read(text, strlen(text), "p", NULL, NULL, &program));
     CHECK(swarf_program_move_count(program) == 4);
     for (size_t i = 0; i < swarf_program_move_count(program); i++) {
@@ -317,15 +401,16 @@ static void test_unknown(void)
     }
     CHECK(isnan(swarf_program_moves(program)[1].end[1]));
     swarf_program_release(program);
-    static const char *const bad[] = {"G91 G0 X1",       "G2 X1 I1",    "G81 Z1 R2", "G0 X0 Y0\nG91 G81 Z-1 R2",
-                                      "G0 Y1\nG3 X1 R1", "G91 G2 X1 I1"};
+    static const char *const bad[] = {"G91 G0 X1",          "F1 G2 X1 I1",
+                                      "F1 G81 Z1 R2",       "G0 X0 Y0\nF1 G91 G81 Z-1 R2",
+                                      "G0 Y1\nF1 G3 X1 R1", "F1 G91 G2 X1 I1"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         program = NULL;
         CHECK_FAILS(swarf_gcode_read(bad[i], strlen(bad[i]), "p", NULL, NULL, &program), SWARF_ERROR_FORMAT, "unknown");
         swarf_program_release(program);
     }
     program = NULL; /* a cycle finds its height by R */
-    CHECK_OK(swarf_gcode_read("G81 X1 Y2 Z-3 R1", 16, "p", NULL, NULL, &program));
+    CHECK_OK(swarf_gcode_read("F9G81 X1Y2Z-3 R1", 16, "p", NULL, NULL, &program));
     CHECK(swarf_program_move_count(program) == 4);
     swarf_program_release(program);
 }
@@ -388,7 +473,7 @@ static void test_arcs(void)
     refuse("G2 X10", "part.nc:1:1: error: 'G2' arc needs a centre by I or J, or R");
     refuse("G90.1 G2 X10 I5", "arc needs a centre by I and J (both under G90.1), or R");
     refuse("G2 X10 I4", "'G2' arc: the radius is 4 mm at the start but 6 mm at the end");
-    CHECK(strstr(swarf_error_last(), "the centre X5 Y0 would fit") != NULL);
+    CHECK(strstr(swarf_error_last(), "I5 J0 would fit") != NULL);
     refuse("G2 X10 R4", "part.nc:1:8: error: 'R4' is too small: the ends are 10 mm apart, so R must be at least 5");
     refuse("G20 G2 X10 R4", "so R must be at least 5");
     refuse("G2 X0 Y0 R5", "makes no arc between equal points");
@@ -408,7 +493,7 @@ static void test_cycles(void)
     expect("G81 X1 Y2 Z-3 R1", "rrfr", 1.0, 2.0, n, 1.0, 2.0, 1.0, 1.0, 2.0, -3.0, 1.0, 2.0, n);
     expect("G99 G81 X1 Y2 Z-3 R1", "rrfr", 1.0, 2.0, n, 1.0, 2.0, 1.0, 1.0, 2.0, -3.0, 1.0, 2.0, 1.0);
     expect("G82 X1 Z-3 R1 P.5", "rrfdr", 1.0, 0.0, n, 1.0, 0.0, 1.0, 1.0, 0.0, -3.0, 1.0, 0.0, -3.0, 1.0, 0.0, n);
-    expect("G85 X1 Z-3 R1", "rrff", 1.0, 0.0, n, 1.0, 0.0, 1.0, 1.0, 0.0, -3.0, 1.0, 0.0, n);
+    expect("G85 X1 Z-3 R1", "rrffr", 1.0, 0.0, n, 1.0, 0.0, 1.0, 1.0, 0.0, -3.0, 1.0, 0.0, 1.0, 1.0, 0.0, n);
     expect("G89 X1 Z-3 R1 P.5", "rrfdf", 1.0, 0.0, n, 1.0, 0.0, 1.0, 1.0, 0.0, -3.0, 1.0, 0.0, -3.0, 1.0, 0.0, n);
     expect("G83 Z-3 R1 Q2", "rfrrfr", 0.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -0.746, 0.0, 0.0, -3.0,
            0.0, 0.0, n);

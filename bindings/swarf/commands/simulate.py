@@ -8,7 +8,7 @@ import sys
 import time
 from typing import Any, Sequence
 
-from .. import _native, readers, report, specs
+from .. import _native, gcode, readers, report, specs
 from ..console import DONE, FINDINGS, check_outputs, check_suffix, one_line
 from ..job import Job
 from ..progress import Bar
@@ -40,6 +40,7 @@ def add(subparsers: Any) -> None:
                          help="write the result: .stl .ply .obj .vdb (repeatable)")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
     command.add_argument("--report", metavar="FILE.json", help="write a report")
+    gcode.add_arguments(command)
 
 
 def add_tools(job: Job, words: Sequence[str]) -> None:
@@ -87,9 +88,10 @@ def run(arguments: argparse.Namespace) -> int:
     check_outputs((*arguments.output, arguments.picture, arguments.report), arguments.input)
     stock = None if arguments.stock is None else specs.stock(arguments.stock)
 
+    options = gcode.options(arguments)
     with Bar() as bar:
         started = time.perf_counter()
-        job = readers.read(arguments.input, arguments.job, lambda fraction: bar("read", fraction))
+        job = readers.read(arguments.input, arguments.job, lambda fraction: bar("read", fraction), options)
         if stock is not None:
             job.stock = stock
         add_tools(job, arguments.tool)
@@ -111,6 +113,8 @@ def run(arguments: argparse.Namespace) -> int:
     made = report.make(result, arguments.input, seconds_read)
     if arguments.report is not None:
         report.write(made, arguments.report)
+    for note in job.program.notes:
+        print(f"swarf: {note[0]}: {gcode.note_text(note)}", file=sys.stderr)
     for note in job.notes:
         print(f"swarf: note: {one_line(note)}", file=sys.stderr)
     for finding in result.simulation.findings[:FINDINGS_SHOWN]:

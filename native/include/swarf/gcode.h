@@ -39,15 +39,15 @@ SWARF_API swarf_status swarf_gcode_tools_read(const char *path, double unit_mm, 
 SWARF_API void swarf_gcode_tools_free(swarf_gcode_tool *tools);
 
 typedef struct swarf_gcode_options {
-    size_t size;                   /**< sizeof(swarf_gcode_options) */
-    double start[3];               /**< where the tool stands first, mm; NAN per axis: unknown until commanded */
+    size_t size;     /**< sizeof(swarf_gcode_options) */
+    double start[3]; /**< where the tool stands first, mm; NAN per axis: unknown until commanded */
     swarf_gcode_dialect dialect;
     int32_t block_delete;          /**< 1: lines that begin with '/' are left out */
     const swarf_gcode_tool *tools; /**< tool table; NULL: none is known, G43 of the loaded tool leads its tip */
     size_t tool_count;
     const char *parameters; /**< LinuxCNC's parameter file (.var), mm; NULL: none, machine coordinates are unknown */
     const char *path;       /**< folders for subroutines in files of their own, separated by ':'; NULL: none */
-    size_t line_limit; /**< lines that loops and calls may execute beside the text itself; 0: 20 million */
+    size_t line_limit;      /**< lines that loops and calls may execute beside the text itself; 0: 20 million */
     swarf_notes *notes;     /**< what the reader has to say, the error included, is added here; may be NULL */
 } swarf_gcode_options;
 
