@@ -12,7 +12,7 @@ ADDON = os.path.join(ROOT, "freecad_mod")
 sys.path.insert(0, os.path.join(ADDON, "freecad"))
 
 # These run inside FreeCAD, see CMakeLists.txt.
-collect_ignore = ["inside", "gui.py"]
+collect_ignore = ["inside", "gui.py", "gui_panel.py", "gui_support.py"]
 
 
 @pytest.fixture

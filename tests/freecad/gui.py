@@ -1,54 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The add-on in the real GUI (see run): workbench, commands in both workbenches, panel, cancel, result, mark, icon.
-Leaves screenshots and the verdict PASSED or FAILED in $SWARF_GUI_OUT."""
+"""The add-on in the real GUI (see run): workbench, commands in both workbenches, panel, cancel, result, mark, icon."""
 
 import os
 import sys
-import time
-import traceback
 
 import FreeCAD
 import FreeCADGui as Gui
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-OUT = os.environ["SWARF_GUI_OUT"]
-sys.path.insert(0, os.path.join(HERE, "inside"))
+sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
-from PySide import QtCore  # noqa: E402
-
-try:
-    from PySide import QtWidgets
-except ImportError:  # FreeCAD 0.20
-    from PySide import QtGui as QtWidgets
-
-# The CAM workbench asks about units at its first activation unless the schema has minutes (6: small parts and CNC).
-FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Units").SetInt("UserSchema", 6)
-for group in ("Path", "CAM"):
-    FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/" + group).SetBool("WarningSuppressVelocity", True)
-
-WAIT_SECONDS = 120
-
-
-def pump(seconds):
-    """Let the GUI live."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        QtWidgets.QApplication.processEvents()
-        time.sleep(0.01)
-
-
-def wait_for(condition, what):
-    """Let the GUI live until a condition holds."""
-    end = time.monotonic() + WAIT_SECONDS
-    while not condition():
-        assert time.monotonic() < end, "timeout: " + what
-        pump(0.05)
-
-
-def screenshot(name):
-    """The whole screen: widgets do not hold what OpenGL drew."""
-    pump(0.5)
-    QtWidgets.QApplication.primaryScreen().grabWindow(0).save(os.path.join(OUT, name))
+from gui_support import OUT, QtWidgets, pump, screenshot, start, wait_for  # noqa: E402
 
 
 def menu_texts():
@@ -68,7 +30,7 @@ def check():
     import samples
     from freecad.swarf_cam import native
     from freecad.swarf_cam.app import simulation
-    from freecad.swarf_cam.gui import panel
+    from freecad.swarf_cam.gui import task as panel
 
     assert "SwarfWorkbench" in Gui.listWorkbenches()
     assert {"Swarf_Simulate", "Swarf_Update"} <= set(Gui.listCommands())
@@ -153,36 +115,4 @@ def check():
     assert obj.UpToDate and obj.ViewObject.Proxy.getIcon().endswith("swarf.svg")
 
 
-def run():
-    """Check, tell, end."""
-    verdict = "FAILED"
-    try:
-        check()
-        verdict = "PASSED"
-    except BaseException:
-        traceback.print_exc()
-        screenshot("failed.png")
-    with open(os.path.join(OUT, "verdict"), "w") as file:
-        file.write(verdict + "\n")
-    print("GUI TEST", verdict)
-    sys.stdout.flush()
-    for name in list(FreeCAD.listDocuments()):
-        FreeCAD.closeDocument(name)
-    if verdict != "PASSED":
-        os._exit(1)
-    Gui.getMainWindow().close()
-
-
-def watch():
-    """A modal dialog would stop the test: show it and close it."""
-    dialog = QtWidgets.QApplication.activeModalWidget()
-    if dialog is not None:
-        print("MODAL", type(dialog).__name__, dialog.windowTitle(), getattr(dialog, "text", lambda: "")())
-        dialog.grab().save(os.path.join(OUT, "modal.png"))
-        dialog.close()
-
-
-WATCH = QtCore.QTimer()
-WATCH.timeout.connect(watch)
-WATCH.start(2000)
-QtCore.QTimer.singleShot(1500, run)
+start(check)

@@ -7,7 +7,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from freecad.swarf_cam import ICONS
-from freecad.swarf_cam.gui import commands
+from freecad.swarf_cam.gui import commands, preferences
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -42,4 +42,6 @@ class SwarfWorkbench(Gui.Workbench):
 
 
 Gui.addWorkbench(SwarfWorkbench())
+Gui.addIconPath(ICONS)
+Gui.addPreferencePage(preferences.Page, "Swarf")
 commands.register()

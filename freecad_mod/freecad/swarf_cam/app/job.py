@@ -97,7 +97,8 @@ def _operations(job, notes):
             name, number = controller.Name, int(controller.ToolNumber)
             tool_commands = controller.Path.Commands
             controllers[name] = controller
-        result.append(program.Operation(obj.Label, commands, number, name, tool_commands, placement_of(obj)))
+        result.append(program.Operation(obj.Label, commands, number, name, tool_commands, placement_of(obj),
+                                        obj.Name))
     return result, controllers.values()
 
 
@@ -126,4 +127,5 @@ def read_job(job):
     for number, (name, parts) in described.items():
         if table.feeds_with(number) and not any(kind == cutter.FLUTES for kind, _ in parts):
             raise JobError("the tool '%s' (T%d) has no flutes and cannot cut" % (name, number))
-    return JobData(job.Label, table, described, shapes.stock_of(job), shapes.design_of(job), notes)
+    return JobData(job.Label, table, described, shapes.stock_of(job), shapes.design_of(job), notes,
+                   operations)

@@ -217,6 +217,25 @@ def store(obj, prepared, result):
     obj.purgeTouched()
 
 
+def add(job, prepared, result, obj=None):
+    """Put a result into the job's document in one undoable step: into a simulation object, or a new one -> it.
+
+    ReferenceError when the job or its document is gone; any error leaves the document as it was.
+    """
+    document = job.Document
+    job.Name, document.Name
+    document.openTransaction("Simulate")
+    try:
+        obj = obj or make(job, prepared.voxel_mm)
+        obj.VoxelSize = prepared.voxel_mm
+        store(obj, prepared, result)
+    except BaseException:
+        document.abortTransaction()
+        raise
+    document.commitTransaction()
+    return obj
+
+
 def simulate(obj, progress=None):
     """Run a simulation object to its end in this thread, in one undoable step.
 
@@ -224,14 +243,7 @@ def simulate(obj, progress=None):
     swarf.Cancelled leave the object as it was.
     """
     prepared = prepare(obj)
-    document = obj.Document
     with tempfile.TemporaryDirectory(prefix="swarf-") as folder:
         result = prepared.run(folder, progress)
-        document.openTransaction("Simulate")
-        try:
-            store(obj, prepared, result)
-        except BaseException:
-            document.abortTransaction()
-            raise
-        document.commitTransaction()
+        add(obj.Job, prepared, result, obj)
     return obj

@@ -12,7 +12,8 @@ class JobData:
     moves: moves.MoveTable. tools: number -> (name, parts as core.cutter.parts gives them). stock: a dict with
     "kind" "box" and "lo", "hi", or "kind" "mesh" and "mesh". Meshes, also design (None: no model), are pairs
     (points, triangles): array('d') of x y z and array('I') of three indices each.
-    notes: what the reader left out or assumed, one sentence each.
+    notes: what the reader left out or assumed, one sentence each. operations: program.Operation of each name in
+    moves.operations; empty where the job came through a file.
     """
 
     name: str
@@ -21,3 +22,4 @@ class JobData:
     stock: dict
     design: Any = None
     notes: list = field(default_factory=list)
+    operations: list = field(default_factory=list)

@@ -40,16 +40,17 @@ class Operation:
 
     name: shown in results. commands: its Path commands. tool: number of its tool. controller: any value that
     is equal for operations that share a tool controller. tool_commands: the controller's own commands, played
-    when the controller changes. placement: of the operation, None for none.
+    when the controller changes. placement: of the operation, None for none. source: the document's name of it.
     """
 
-    def __init__(self, name, commands, tool, controller=None, tool_commands=(), placement=None):
+    def __init__(self, name, commands, tool, controller=None, tool_commands=(), placement=None, source=None):
         self.name = name
         self.commands = commands
         self.tool = tool
         self.controller = tool if controller is None else controller
         self.tool_commands = tool_commands
         self.placement = placement or Placement()
+        self.source = source
 
 
 def canonical(name):

@@ -12,7 +12,7 @@ from ..app import simulation
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
-NAMES = ["Swarf_Simulate", "Swarf_Update"]
+NAMES = ["Swarf_Live", "Swarf_Simulate", "Swarf_Update"]
 
 
 def chosen_job():
@@ -42,6 +42,30 @@ def chosen_simulation():
     return found[0] if len(found) == 1 else None
 
 
+class Live:
+    """Watch a job being cut."""
+
+    def GetResources(self):
+        """Texts and icon."""
+        return {"Pixmap": os.path.join(ICONS, "swarf-live.svg"),
+                "MenuText": QT_TRANSLATE_NOOP("Swarf_Live", "Watch milling"),
+                "ToolTip": QT_TRANSLATE_NOOP("Swarf_Live", "Watch the stock of the job being cut, step by step, forward "
+                                                           "and back")}
+
+    def IsActive(self):
+        """Whenever there is a job to watch and something to do it with."""
+        try:
+            return native.is_available() and chosen_job() is not None
+        except (AttributeError, ReferenceError, RuntimeError):
+            return False
+
+    def Activated(self):
+        """Open the dock."""
+        from .panel import dock
+
+        dock.show(chosen_job())
+
+
 class Simulate:
     """Simulate a job."""
 
@@ -61,7 +85,7 @@ class Simulate:
 
     def Activated(self):
         """Open the panel."""
-        from .panel import show_panel
+        from .task import show_panel
 
         show_panel(chosen_job())
 
@@ -84,7 +108,7 @@ class Update:
 
     def Activated(self):
         """Open the panel on it and start."""
-        from .panel import show_panel
+        from .task import show_panel
 
         obj = chosen_simulation()
         show_panel(obj.Job, obj, start=True)
@@ -126,6 +150,7 @@ _path_entries = PathEntries()  # Qt keeps no reference to the object of a method
 
 def register():
     """Make the commands known, in the CAM workbench too."""
+    Gui.addCommand("Swarf_Live", Live())
     Gui.addCommand("Swarf_Simulate", Simulate())
     Gui.addCommand("Swarf_Update", Update())
     if hasattr(Gui, "addWorkbenchManipulator"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Qt through FreeCAD's PySide: Qt 5 or 6; FreeCAD 0.20 has the widgets in QtGui."""
+"""Qt through FreeCAD's PySide: Qt 5 or 6; FreeCAD 0.20 has the widgets in QtGui. The only place that knows which."""
 
 from PySide import QtCore, QtGui
 
@@ -8,7 +8,10 @@ try:
 except ImportError:
     QtWidgets = QtGui
 
-__all__ = ["QtCore", "QtGui", "QtWidgets", "flags"]
+__all__ = ["QAction", "QtCore", "QtGui", "QtWidgets", "flags", "place_of"]
+
+# Qt 6 has it in QtGui.
+QAction = getattr(QtGui, "QAction", None) or QtWidgets.QAction
 
 
 def flags(*values):
@@ -17,3 +20,9 @@ def flags(*values):
     for value in values:
         result |= int(getattr(value, "value", value))
     return result
+
+
+def place_of(event):
+    """(x, y) of a mouse event in its widget, in device-independent pixels."""
+    point = event.position() if hasattr(event, "position") else event.localPos()
+    return point.x(), point.y()

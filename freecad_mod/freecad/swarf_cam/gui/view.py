@@ -33,7 +33,7 @@ class SimulationView:
 
     def doubleClicked(self, vobj):
         """Open the panel on this simulation."""
-        from .panel import show_panel
+        from .task import show_panel
 
         show_panel(vobj.Object.Job, vobj.Object)
         return True

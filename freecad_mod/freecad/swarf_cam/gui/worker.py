@@ -36,6 +36,10 @@ class Worker:
         """Ask the call to stop; on_end follows with its error."""
         self._cancelled.set()
 
+    def join(self, seconds):
+        """Wait for the thread's end."""
+        self._thread.join(seconds)
+
     @property
     def cancelled(self):
         """Whether cancel() was called."""

@@ -35,7 +35,6 @@ class SimulationPanel:
 
     def __init__(self, job, obj=None):
         self.job, self.obj = job, obj
-        self.document = job.Document
         self.worker = self.prepared = self.folder = None
         self.closed = False
         self.form = QtWidgets.QWidget()
@@ -126,20 +125,13 @@ class SimulationPanel:
     def finish(self, result):
         """Put the result into the document, in one transaction."""
         try:
-            self.document.Name, self.job.Name
+            obj = simulation.add(self.job, self.prepared, result, self.obj)
         except ReferenceError:
             self.show_error(translate("Swarf", "The job was deleted meanwhile; its simulation is discarded."))
             return
-        self.document.openTransaction("Simulate")
-        try:
-            obj = self.obj or simulation.make(self.job, self.prepared.voxel_mm)
-            obj.VoxelSize = self.prepared.voxel_mm
-            simulation.store(obj, self.prepared, result)
         except BaseException as error:
-            self.document.abortTransaction()
             self.show_error(error)
             raise
-        self.document.commitTransaction()
         FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: {0}: {1:.1f} mm^3 removed in {2:.1f} s\n").format(
             obj.Label, result.volume_initial - result.volume_final, result.seconds))
         self.close()

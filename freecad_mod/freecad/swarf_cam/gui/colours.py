@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Colours of operations, findings and the picture's background, in light and dark themes."""
+
+from .qt import QtGui
+
+# Told apart by most colour-blind people when neighbours in this order (after Okabe and Ito), on light and dark.
+OPERATIONS = ("#3d8fd1", "#e69f00", "#2aa876", "#cc6fa6", "#d55e00", "#7b7fd4", "#a3a129", "#50b7c9")
+FINDINGS = {"error": "#e5484d", "warning": "#e69f00", "note": "#3d8fd1"}
+
+# Bare aluminium, linear.
+MATERIAL = (0.50, 0.53, 0.56)
+
+BACKGROUND_LIGHT = ((0.72, 0.77, 0.82), (0.93, 0.95, 0.97))
+BACKGROUND_DARK = ((0.085, 0.095, 0.11), (0.20, 0.22, 0.25))
+
+
+def of_operation(index):
+    """QColor of an operation."""
+    return QtGui.QColor(OPERATIONS[index % len(OPERATIONS)])
+
+
+def is_dark(palette):
+    """Whether a theme has light text on dark."""
+    return palette.color(QtGui.QPalette.Window).lightness() < 128
+
+
+def _linear(colour):
+    return tuple(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colour) + (1.0,)
+
+
+def background(palette):
+    """(bottom, top) of the picture for a theme, linear RGBA as Scene.render takes it."""
+    bottom, top = BACKGROUND_DARK if is_dark(palette) else BACKGROUND_LIGHT
+    return _linear(bottom), _linear(top)

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A line over the picture: what went wrong with what can be done about it, or work with progress and cancel."""
+
+import FreeCAD
+
+from ..qt import QtCore, QtWidgets
+
+translate = FreeCAD.Qt.translate
+
+STYLES = {"error": "background: #b3282d; color: white;", "warning": "background: #f0b429; color: #1d1600;",
+          "note": "background: #2f6fab; color: white;"}
+
+
+class Banner(QtWidgets.QFrame):
+    """One message at a time."""
+
+    cancelled = QtCore.Signal()
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.setObjectName("SwarfBanner")
+        row = QtWidgets.QHBoxLayout(self)
+        row.setContentsMargins(10, 5, 6, 5)
+        self.text = QtWidgets.QLabel()
+        self.text.setObjectName("SwarfMessage")
+        self.text.setWordWrap(True)
+        row.addWidget(self.text, 1)
+        self.bar = QtWidgets.QProgressBar()
+        self.bar.setRange(0, 1000)
+        self.bar.setMaximumWidth(160)
+        row.addWidget(self.bar)
+        self.action = QtWidgets.QPushButton()
+        self.action.setObjectName("SwarfAction")
+        row.addWidget(self.action)
+        self.close_button = QtWidgets.QToolButton()
+        self.close_button.setText("✕")
+        self.close_button.setAutoRaise(True)
+        self.close_button.setToolTip(translate("Swarf", "Close"))
+        self.close_button.clicked.connect(lambda *_: self.hide())
+        row.addWidget(self.close_button)
+        self._act = None
+        self.action.clicked.connect(self._clicked)
+        self.hide()
+
+    def _clicked(self, *_):
+        if self._act is not None:
+            self._act()
+
+    def say(self, kind, text, action=None, act=None):
+        """A message of kind "error", "warning" or "note"; action: text of a button that calls act."""
+        self.setStyleSheet("#SwarfBanner { %s } #SwarfMessage { %s } #SwarfBanner QToolButton { %s }"
+                           % (STYLES[kind], STYLES[kind], STYLES[kind]))
+        self.text.setText(text)
+        self.bar.hide()
+        self.close_button.show()
+        self._act = act
+        self.action.setVisible(act is not None)
+        self.action.setText(action or "")
+        self.show()
+
+    def work(self, text, cancel):
+        """Work that goes on, with a button to end it."""
+        self.say("note", text, translate("Swarf", "Cancel"), cancel)
+        self.close_button.hide()
+        self.bar.setValue(0)
+        self.bar.show()
+
+    @property
+    def working(self):
+        """Whether it shows work."""
+        return self.bar.isVisibleTo(self) and self.isVisibleTo(self.parentWidget())
+
+    def progress(self, fraction):
+        """Part of the work that is done."""
+        self.bar.setValue(int(1000 * fraction))
+
+    def done(self):
+        """Nothing to say any more."""
+        self.hide()

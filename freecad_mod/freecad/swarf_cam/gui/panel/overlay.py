@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is painted over the picture: the cube, the caption, the mark of the point that was clicked."""
+
+import math
+
+import FreeCAD
+
+from ...core import viewcube
+from .. import colours
+from ..qt import QtCore, QtGui
+
+translate = FreeCAD.Qt.translate
+
+# Half edge of the cube and its middle's distance from the corner, pixels.
+CUBE, CUBE_MARGIN = 24.0, 58.0
+
+FACE_TEXTS = {
+    "front": FreeCAD.Qt.QT_TRANSLATE_NOOP("Swarf", "FRONT"), "rear": FreeCAD.Qt.QT_TRANSLATE_NOOP("Swarf", "REAR"),
+    "left": FreeCAD.Qt.QT_TRANSLATE_NOOP("Swarf", "LEFT"), "right": FreeCAD.Qt.QT_TRANSLATE_NOOP("Swarf", "RIGHT"),
+    "top": FreeCAD.Qt.QT_TRANSLATE_NOOP("Swarf", "TOP"), "bottom": FreeCAD.Qt.QT_TRANSLATE_NOOP("Swarf", "BOTTOM"),
+}
+AXES = (((1, 0, 0), "#d64545", "X"), ((0, 1, 0), "#3a9a48", "Y"), ((0, 0, 1), "#3d6fd1", "Z"))
+
+
+def _cube_centre(view):
+    return view.width() - CUBE_MARGIN, CUBE_MARGIN
+
+
+def cube_place(view, x, y):
+    """Where a click at a pixel of the view wants to look from, None beside the cube."""
+    if view.camera is None:
+        return None
+    cx, cy = _cube_centre(view)
+    return viewcube.pick(view.camera, (x - cx) / CUBE, (cy - y) / CUBE)
+
+
+def paint(view, painter):
+    """All of it."""
+    painter.setRenderHint(QtGui.QPainter.Antialiasing, True)
+    dark = colours.is_dark(view.palette())
+    if view.camera is not None:
+        _paint_cube(view, painter)
+        _paint_mark(view, painter)
+    _paint_caption(view, painter, dark)
+
+
+def _paint_axes(view, painter, cx, cy):
+    """From the cube's lowest corner along its edges, and a little beyond; the cube is painted over them."""
+    right, up, _ = viewcube.axes(view.camera)
+    font = QtGui.QFont(view.font())
+    font.setPixelSize(11)
+    font.setBold(True)
+    painter.setFont(font)
+    x0, y0 = cx - CUBE * sum(right), cy + CUBE * sum(up)
+    for axis, colour, letter in AXES:
+        x = sum(a * b for a, b in zip(axis, right))
+        y = sum(a * b for a, b in zip(axis, up))
+        if math.hypot(x, y) < 0.15:
+            continue
+        end = QtCore.QPointF(x0 + 2.6 * CUBE * x, y0 - 2.6 * CUBE * y)
+        painter.setPen(QtGui.QPen(QtGui.QColor(colour), 2.0))
+        painter.drawLine(QtCore.QLineF(QtCore.QPointF(x0, y0), end))
+        painter.drawText(QtCore.QRectF(end.x() + 8 * x - 8, end.y() - 8 * y - 8, 16, 16), QtCore.Qt.AlignCenter, letter)
+
+
+def _paint_cube(view, painter):
+    cx, cy = _cube_centre(view)
+    _paint_axes(view, painter, cx, cy)
+    font = QtGui.QFont(view.font())
+    font.setPixelSize(20)
+    font.setBold(True)
+    ink = QtGui.QColor("#20262b")
+    for name, corners, facing in viewcube.faces(view.camera):
+        polygon = QtGui.QPolygonF([QtCore.QPointF(cx + CUBE * x, cy - CUBE * y) for x, y in corners])
+        shade = int(196 + 50 * facing)
+        painter.setPen(QtGui.QPen(QtGui.QColor("#5c6770"), 1.0))
+        painter.setBrush(QtGui.QColor(shade - 4, shade, min(shade + 4, 255), 235))
+        painter.drawPolygon(polygon)
+        (nx, ny), (ux, uy), (vx, vy) = viewcube.label_transform(view.camera, name)
+        painter.save()
+        # text of 100 units across a face of 2
+        painter.setTransform(QtGui.QTransform(ux * CUBE / 50, -uy * CUBE / 50, -vx * CUBE / 50, vy * CUBE / 50,
+                                              cx + CUBE * nx, cy - CUBE * ny), True)
+        painter.setFont(font)
+        painter.setPen(ink)
+        painter.drawText(QtCore.QRectF(-50, -50, 100, 100), QtCore.Qt.AlignCenter,
+                         translate("Swarf", FACE_TEXTS[name]))
+        painter.restore()
+
+
+def _paint_mark(view, painter):
+    if view.mark is None:
+        return
+    x, y, _ = view.camera.project(view.mark, view.aspect())
+    if not (math.isfinite(x) and abs(x) <= 1.2 and abs(y) <= 1.2):
+        return
+    point = QtCore.QPointF((x + 1) / 2 * view.width(), (1 - y) / 2 * view.height())
+    for colour, width in (("#ffffff", 4.0), ("#e5484d", 2.0)):
+        painter.setPen(QtGui.QPen(QtGui.QColor(colour), width))
+        painter.setBrush(QtCore.Qt.NoBrush)
+        painter.drawEllipse(point, 6.0, 6.0)
+        painter.drawPoint(point)
+
+
+def _paint_caption(view, painter, dark):
+    """Operation and line in the upper left corner, on a plate so that they can be read over anything."""
+    title, text, colour = view.caption
+    if not title:
+        return
+    font = QtGui.QFont(view.font())
+    bold = QtGui.QFont(font)
+    bold.setBold(True)
+    room = view.width() - 2 * CUBE_MARGIN - 60
+    metrics, bold_metrics = QtGui.QFontMetricsF(font), QtGui.QFontMetricsF(bold)
+    title = bold_metrics.elidedText(title, QtCore.Qt.ElideRight, room)
+    text = metrics.elidedText(text, QtCore.Qt.ElideRight, room)
+    line = metrics.height()
+    width = max(bold_metrics.boundingRect(title).width(), metrics.boundingRect(text).width()) + 30
+    plate = QtCore.QRectF(8, 8, width, 2 * line + 12)
+    painter.setPen(QtCore.Qt.NoPen)
+    painter.setBrush(QtGui.QColor(20, 24, 28, 190) if dark else QtGui.QColor(255, 255, 255, 205))
+    painter.drawRoundedRect(plate, 5, 5)
+    if colour is not None:
+        painter.setBrush(colour)
+        painter.drawRoundedRect(QtCore.QRectF(14, 14, 5, 2 * line), 2, 2)
+    painter.setPen(QtGui.QColor("#f2f4f5") if dark else QtGui.QColor("#1d2329"))
+    painter.setFont(bold)
+    painter.drawText(QtCore.QRectF(26, 14, width, line), QtCore.Qt.AlignVCenter, title)
+    painter.setFont(font)
+    painter.drawText(QtCore.QRectF(26, 14 + line, width, line), QtCore.Qt.AlignVCenter, text)

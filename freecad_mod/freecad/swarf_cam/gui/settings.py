@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the user chose, in FreeCAD's parameters, and what FreeCAD's own 3D view is set to."""
+
+import FreeCAD
+
+GROUP = "User parameter:BaseApp/Preferences/Mod/Swarf"
+VIEW = "User parameter:BaseApp/Preferences/View"
+
+# Voxels along the longest edge of the stock at first: shows a part at once on any machine.
+RESOLUTION = 400
+SPEED = 50.0
+
+BOOLEANS = {"AutoPlay": True, "ShowCutter": True, "ShowPath": False, "Perspective": False, "Occlusion": True,
+            "Shadow": False}
+
+
+def _group():
+    return FreeCAD.ParamGet(GROUP)
+
+
+def flag(name):
+    """One of BOOLEANS."""
+    return _group().GetBool(name, BOOLEANS[name])
+
+
+def set_flag(name, value):
+    """Keep one of BOOLEANS."""
+    _group().SetBool(name, bool(value))
+
+
+def resolution():
+    """Voxels along the longest edge of a stock."""
+    return max(_group().GetInt("Resolution", RESOLUTION), 10)
+
+
+def set_resolution(value):
+    """Keep it."""
+    _group().SetInt("Resolution", int(value))
+
+
+def speed():
+    """Times as fast as the machine; 0 as fast as possible."""
+    return _group().GetFloat("Speed", SPEED)
+
+
+def set_speed(value):
+    """Keep it."""
+    _group().SetFloat("Speed", value)
+
+
+def navigation():
+    """(style, turntable, invert zoom, zoom at cursor) of FreeCAD's 3D view."""
+    view = FreeCAD.ParamGet(VIEW)
+    return (view.GetString("NavigationStyle", "Gui::CADNavigationStyle"), view.GetInt("OrbitStyle", 1) == 0,
+            view.GetBool("InvertZoom", True), view.GetBool("ZoomAtCursor", True))

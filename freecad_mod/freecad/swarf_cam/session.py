@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A job being watched: its stock at any move, pictures of it, and what made a point of its surface.
+
+Made and used in one thread, the engine's; only what is named as read only may be read elsewhere. Imports no FreeCAD.
+"""
+
+import inspect
+import math
+import os
+from dataclasses import dataclass, field
+from typing import Any
+
+from . import native
+from .core import moves
+from .core.clock import Clock
+from .core.listing import Listing
+from .core.playback import Playback
+from .core.transport import STOP_FINDING, STOP_OPERATION, STOP_TOOL_CHANGE
+
+# Share of the memory a simulation may take that kept copies of the stock may take together.
+COPIES_SHARE = 2.0
+
+# Rays per edge of a pixel at rest.
+SAMPLES = 3
+
+# The box that tells which move made a point: its half edge and its voxels, in voxels of the stock.
+PROBE_REACH, PROBE_VOXEL = 0.35, 0.1
+
+# Making the stock takes about this part of opening; the rest is cutting it once.
+OPEN_SHARE = 0.3
+
+
+@dataclass(frozen=True)
+class View:
+    """What a picture shows. camera: a swarf.Camera that nobody changes any more. look: further keywords of
+    Scene.render, as pairs; those that the native module does not know are left out."""
+
+    camera: Any
+    width: int
+    height: int
+    look: tuple = ()
+    show_cutter: bool = True
+    show_path: bool = False
+
+
+@dataclass
+class Frame:
+    """A picture, read only. rgba: bytes, rows from the top. depth: rows of mm along the view, inf for nothing.
+    place: where the stock stood. sharp: whether it is as good as it gets."""
+
+    width: int
+    height: int
+    rgba: bytes
+    depth: Any
+    camera: Any
+    place: float
+    sharp: bool
+
+
+@dataclass
+class Picked:
+    """What is seen at a place: point and normal in mm; move -1 for the stock as it was; line of the listing."""
+
+    point: tuple
+    normal: tuple
+    move: int = -1
+    line: int = -1
+    operation: int = -1
+    tool: int = -1
+    depth_below_top: float = 0.0
+    slope_deg: float = 0.0
+
+
+@dataclass
+class Overview:
+    """The whole program's outcome, read only: mm3 removed by each operation, findings as (place, severity, text)."""
+
+    removed: list = field(default_factory=list)
+    volume_initial: float = 0.0
+    volume_final: float = 0.0
+    findings: list = field(default_factory=list)
+
+
+def known_keywords():
+    """Keywords of Scene.render that this native module has."""
+    return frozenset(inspect.signature(native.load().Scene.render).parameters)
+
+
+class Session:
+    """data: JobData with its operations. progress as in native.simulate().
+
+    clock, listing, box, overview, stops, tool_changes, tools and data are read only, any thread.
+    """
+
+    def __init__(self, data, voxel_mm, progress):
+        swarf = native.load()
+        self.data, self.voxel_mm = data, voxel_mm
+        self.job = native.to_job(data)
+        self.program, self.tools = self.job.program, self.job.tools
+        from swarf.simulate import make_stock, stock_box  # of the package, once it is known to be there
+
+        self.box = tuple(tuple(float(value) for value in corner) for corner in stock_box(self.job.stock))
+        stock = make_stock(self.job.stock, voxel=voxel_mm, progress=lambda done: progress(OPEN_SHARE * done))
+        self.clock = Clock(data.moves)
+        self.listing = Listing(data.moves, data.operations)
+        self._keywords = known_keywords()
+        self._swarf = swarf
+        limit = COPIES_SHARE * native.estimate(*self.box, voxel_mm)
+        self._playback = Playback(stock, self.program, self.tools, self._runs(), limit)
+        self.overview = self._look_ahead(lambda done: progress(OPEN_SHARE + (1 - OPEN_SHARE) * done))
+        self.tool_changes = [float(index) for index in range(len(data.moves)) if self._is_tool_change(index)]
+        self.stops = {STOP_OPERATION: [float(begin) for begin in self.listing.operation_begin[1:]],
+                      STOP_TOOL_CHANGE: self.tool_changes,
+                      STOP_FINDING: sorted({place for place, _, _ in self.overview.findings})}
+        self._scene, self._scene_of = None, None
+
+    def _runs(self):
+        """(first move, tool) of each run of moves with one tool."""
+        result = [(0, self.tool_at(0.0))]
+        sections, rows = self.data.moves.sections, self.data.moves.rows
+        for index, section in enumerate(rows[2::moves.COLUMNS]):
+            tool = sections[int(section)][0]
+            if tool != result[-1][1]:
+                result.append((index, tool))
+        return result
+
+    def _is_tool_change(self, index):
+        row = self.data.moves.row(index)
+        return row[0] == moves.EVENT and row[1] == moves.TOOL_CHANGE
+
+    def _look_ahead(self, progress):
+        """Cut it all once: what each operation removes, what is noticed, and copies to go back to."""
+        count = len(self.data.moves)
+        result = Overview(removed=[0.0] * len(self.data.moves.operations), volume_initial=self._playback.stock.volume())
+        seen = set()
+        ends = sorted({begin for begin in self.listing.operation_begin if begin > 0} | {count})
+        if len(ends) == 1:  # one long operation: halves, each of which is kept
+            ends.insert(0, count // 2)
+        for end in ends:
+            first = self._playback.at
+            done = self._playback.play_to(end, lambda part: progress((first + part * (end - first)) / max(count, 1)))
+            result.removed = [a + b for a, b in zip(result.removed, done.removed_by_operation)]
+            for item in done.findings:
+                if (item.operation, item.text) not in seen:
+                    seen.add((item.operation, item.text))
+                    result.findings.append((float(max(item.move, 0)), item.severity, item.text))
+            self._playback.keep()
+        result.volume_final = self._playback.stock.volume()
+        return result
+
+    def step(self, move, seconds, progress=None):
+        """Go towards standing after a move, for about so many seconds; where it stands then."""
+        return self._playback.step(move, seconds, progress)
+
+    def _current_scene(self):
+        if self._scene_of is not self._playback.stock:
+            self._scene_of = self._playback.stock
+            self._scene = self._swarf.Scene(self._scene_of)
+        return self._scene
+
+    def _look(self, view, place):
+        """Keywords of Scene.render for a view, as far as the native module knows them."""
+        look = dict(view.look)
+        if view.show_cutter:
+            tool = self.tool_at(place)
+            tip = self.clock.tip_at(place)
+            if tool in self.tools and tip is not None:
+                look["cutter"] = (self.tools[tool], tip)
+        if view.show_path:
+            look["path"], look["path_done"] = self.program, place
+        return {key: value for key, value in look.items() if key in self._keywords}
+
+    def draw(self, view, place, budget_ms, progress=None):
+        """A Frame; budget_ms None: as good as it gets."""
+        quality = {"samples": SAMPLES} if budget_ms is None else {"samples": 1, "budget_ms": budget_ms}
+        if budget_ms is not None:
+            for name in ("occlusion", "shadow"):
+                if name in self._keywords:
+                    quality[name] = False
+        look = dict(self._look(view, place), **quality)
+        picture = self._current_scene().render(view.camera, view.width, view.height, buffers=("rgba", "depth"),
+                                               progress=progress, **look)
+        return Frame(view.width, view.height, bytes(picture.rgba), picture.depth, view.camera, place,
+                     budget_ms is None)
+
+    def tool_at(self, place):
+        """Number of the tool in the spindle at a place, -1 for none."""
+        count = len(self.data.moves)
+        if not count:
+            return -1
+        index = min(int(place), count - 1)
+        return self.data.moves.sections[int(self.data.moves.row(index)[2])][0]
+
+    def pick(self, view, x, y, place):
+        """Picked at a place of the picture (x to the right, y upwards, -1 .. 1), or None where nothing is."""
+        found = self._current_scene().pick(view.camera, x, y, view.width / view.height)
+        if found is None or found.seen != "stock":
+            return None
+        move = found.move if found.move >= 0 else self._maker(found.point, int(place))
+        result = Picked(found.point, found.normal, depth_below_top=self.box[1][2] - found.point[2],
+                        slope_deg=math.degrees(math.acos(min(max(found.normal[2], -1.0), 1.0))))
+        if move >= 0:
+            tool, operation = self.data.moves.sections[int(self.data.moves.row(move)[2])][:2]
+            result.move, result.line = move, self.listing.line_of(move)
+            result.operation, result.tool = operation, tool
+        return result
+
+    def _maker(self, point, place):
+        """The last of the moves before a place that takes something from a tiny block about a point of the surface:
+        no move takes more than up to the surface. -1 when none does."""
+        if not place:
+            return -1
+        reach = PROBE_REACH * self.voxel_mm
+        block = self._swarf.Stock.box([value - reach for value in point], [value + reach for value in point],
+                                      PROBE_VOXEL * self.voxel_mm)
+        done = block.simulate(self.program, self.tools, first=0, count=place, batch=1, removed_per_move=True)
+        taken = done.removed_per_move
+        return next((index for index in range(place - 1, -1, -1) if taken[index] > 0.0), -1)
+
+    def write_png(self, path, view, place, progress=None):
+        """The picture as good as it gets, to a file."""
+        look = dict(self._look(view, place), samples=SAMPLES)
+        self._current_scene().render(view.camera, view.width, view.height, progress=progress, **look).write(path)
+
+    def write_frames(self, folder, view, places, progress=None, on_frame=None):
+        """The stock at each of some places as frame-00000.png ... -> number of files. Goes back to where it was."""
+        home = self._playback.at
+        try:
+            for number, place in enumerate(places):
+                while self._playback.at != int(place):
+                    self.step(int(place), 0.1, progress)
+                self.write_png(os.path.join(folder, "frame-%05d.png" % number), view, place, progress)
+                if on_frame:
+                    on_frame((number + 1) / len(places))
+        finally:
+            while self._playback.at != home:
+                self.step(home, 0.1)
+        return len(places)

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What tests in the real GUI share: let it live, look at it, end it. Screenshots and the verdict PASSED or FAILED go
+to $SWARF_GUI_OUT."""
+
+import os
+import sys
+import time
+import traceback
+
+import FreeCAD
+import FreeCADGui as Gui
+from PySide import QtCore
+
+try:
+    from PySide import QtWidgets
+except ImportError:  # FreeCAD 0.20
+    from PySide import QtGui as QtWidgets
+
+OUT = os.environ["SWARF_GUI_OUT"]
+
+# The CAM workbench asks about units at its first activation unless the schema has minutes (6: small parts and CNC).
+FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Units").SetInt("UserSchema", 6)
+for group in ("Path", "CAM"):
+    FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/" + group).SetBool("WarningSuppressVelocity", True)
+
+WAIT_SECONDS = 120
+
+
+def pump(seconds):
+    """Let the GUI live."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        QtWidgets.QApplication.processEvents()
+        time.sleep(0.01)
+
+
+def wait_for(condition, what):
+    """Let the GUI live until a condition holds."""
+    end = time.monotonic() + WAIT_SECONDS
+    while not condition():
+        assert time.monotonic() < end, "timeout: " + what
+        pump(0.05)
+
+
+def screenshot(name):
+    """The whole screen: widgets do not hold what OpenGL drew."""
+    pump(0.5)
+    QtWidgets.QApplication.primaryScreen().grabWindow(0).save(os.path.join(OUT, name))
+
+
+def run(check):
+    """Check, tell, end."""
+    verdict = "FAILED"
+    try:
+        check()
+        verdict = "PASSED"
+    except BaseException:
+        traceback.print_exc()
+        screenshot("failed.png")
+    with open(os.path.join(OUT, "verdict"), "w") as file:
+        file.write(verdict + "\n")
+    print("GUI TEST", verdict)
+    sys.stdout.flush()
+    for name in list(FreeCAD.listDocuments()):
+        FreeCAD.closeDocument(name)
+    if verdict != "PASSED":
+        os._exit(1)
+    Gui.getMainWindow().close()
+
+
+def watch():
+    """A modal dialog would stop the test: show it and close it."""
+    dialog = QtWidgets.QApplication.activeModalWidget()
+    if dialog is not None:
+        print("MODAL", type(dialog).__name__, dialog.windowTitle(), getattr(dialog, "text", lambda: "")())
+        dialog.grab().save(os.path.join(OUT, "modal.png"))
+        dialog.close()
+
+
+def start(check):
+    """Run a check once FreeCAD has started."""
+    timer = QtCore.QTimer(Gui.getMainWindow())
+    timer.timeout.connect(watch)
+    timer.start(2000)
+    QtCore.QTimer.singleShot(1500, lambda: run(check))
