@@ -7,6 +7,7 @@ Made and used in one thread, the engine's; only what is named as read only may b
 import inspect
 import math
 import os
+import time
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,6 +23,9 @@ COPIES_SHARE = 2.0
 
 # Rays per edge of a pixel at rest.
 SAMPLES = 3
+
+# Pixels of the picture per edge of one ray while things move, at most: more cannot be made out.
+COARSE_MAX = 4
 
 # The box that tells which move made a point: its half edge and its voxels, in voxels of the stock.
 PROBE_REACH, PROBE_VOXEL = 0.35, 0.1
@@ -113,6 +117,7 @@ class Session:
                       STOP_TOOL_CHANGE: self.tool_changes,
                       STOP_FINDING: sorted({place for place, _, _ in self.overview.findings})}
         self._scene, self._scene_of = None, None
+        self._coarse = 1
 
     def _runs(self):
         """(first move, tool) of each run of moves with one tool."""
@@ -166,20 +171,28 @@ class Session:
             tip = self.clock.tip_at(place)
             if tool in self.tools and tip is not None:
                 look["cutter"] = (self.tools[tool], tip)
-        if view.show_path:
-            look["path"], look["path_done"] = self.program, place
+        look.update(program=self.program, moves_done=float(place), path=view.show_path)
         return {key: value for key, value in look.items() if key in self._keywords}
 
     def draw(self, view, place, budget_ms, progress=None):
         """A Frame; budget_ms None: as good as it gets."""
-        quality = {"samples": SAMPLES} if budget_ms is None else {"samples": 1, "budget_ms": budget_ms}
-        if budget_ms is not None:
-            for name in ("occlusion", "shadow"):
-                if name in self._keywords:
-                    quality[name] = False
-        look = dict(self._look(view, place), **quality)
+        look = self._look(view, place)
+        if budget_ms is None:
+            look["samples"] = SAMPLES
+        else:
+            look.update(samples=1, coarse=self._coarse)
+            # coarse rays make steps of the edges' lines
+            off = ("occlusion", "shadow") if self._coarse == 1 else ("occlusion", "shadow", "edges")
+            look.update((name, False) for name in off if name in self._keywords)
+        started = time.monotonic()
         picture = self._current_scene().render(view.camera, view.width, view.height, buffers=("rgba", "depth"),
                                                progress=progress, **look)
+        if budget_ms is not None:
+            took = 1000 * (time.monotonic() - started)
+            if took > 1.5 * budget_ms:
+                self._coarse = min(self._coarse + 1, COARSE_MAX)
+            elif took < 0.5 * budget_ms:
+                self._coarse = max(self._coarse - 1, 1)
         return Frame(view.width, view.height, bytes(picture.rgba), picture.depth, view.camera, place,
                      budget_ms is None)
 
@@ -193,7 +206,7 @@ class Session:
 
     def pick(self, view, x, y, place):
         """Picked at a place of the picture (x to the right, y upwards, -1 .. 1), or None where nothing is."""
-        found = self._current_scene().pick(view.camera, x, y, view.width / view.height)
+        found = self._current_scene().pick(view.camera, x, y, view.width, view.height)
         if found is None or found.seen != "stock":
             return None
         move = found.move if found.move >= 0 else self._maker(found.point, int(place))

@@ -13,7 +13,7 @@ import time
 
 # Milliseconds for a picture while things move: with as much for cutting about twelve pictures a second in the worst
 # case, and thirty when only the view turns.
-BUDGET_MS = 30.0
+BUDGET_MS = 35.0
 
 # Seconds of cutting between two pictures while the stock is played.
 SLICE_SECONDS = 0.04

@@ -11,13 +11,18 @@ STYLES = {"error": "background: #b3282d; color: white;", "warning": "background:
           "note": "background: #2f6fab; color: white;"}
 
 
+# Pixels between the message and the borders of the picture.
+MARGIN = 8
+
+
 class Banner(QtWidgets.QFrame):
     """One message at a time."""
 
     cancelled = QtCore.Signal()
 
-    def __init__(self, parent=None):
-        super().__init__(parent)
+    def __init__(self, view):
+        super().__init__(view)
+        view.installEventFilter(self)
         self.setObjectName("SwarfBanner")
         row = QtWidgets.QHBoxLayout(self)
         row.setContentsMargins(10, 5, 6, 5)
@@ -42,13 +47,25 @@ class Banner(QtWidgets.QFrame):
         self.action.clicked.connect(self._clicked)
         self.hide()
 
+    def eventFilter(self, watched, event):
+        """Stay at the lower border of the picture."""
+        if event.type() == QtCore.QEvent.Resize:
+            self._place()
+        return False
+
+    def _place(self):
+        view = self.parentWidget()
+        width = view.width() - 2 * MARGIN
+        height = max(self.layout().heightForWidth(width), self.sizeHint().height())
+        self.setGeometry(MARGIN, view.height() - height - MARGIN, width, height)
+
     def _clicked(self, *_):
         if self._act is not None:
             self._act()
 
     def say(self, kind, text, action=None, act=None):
         """A message of kind "error", "warning" or "note"; action: text of a button that calls act."""
-        self.setStyleSheet("#SwarfBanner { %s } #SwarfMessage { %s } #SwarfBanner QToolButton { %s }"
+        self.setStyleSheet("#SwarfBanner { border-radius: 5px; %s } #SwarfMessage { %s } #SwarfBanner QToolButton { %s }"
                            % (STYLES[kind], STYLES[kind], STYLES[kind]))
         self.text.setText(text)
         self.bar.hide()
@@ -56,7 +73,9 @@ class Banner(QtWidgets.QFrame):
         self._act = act
         self.action.setVisible(act is not None)
         self.action.setText(action or "")
+        self._place()
         self.show()
+        self.raise_()
 
     def work(self, text, cancel):
         """Work that goes on, with a button to end it."""
@@ -64,6 +83,7 @@ class Banner(QtWidgets.QFrame):
         self.close_button.hide()
         self.bar.setValue(0)
         self.bar.show()
+        self._place()
 
     @property
     def working(self):

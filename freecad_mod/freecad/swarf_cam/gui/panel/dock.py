@@ -34,6 +34,13 @@ from .watch import JobWatch
 
 translate = FreeCAD.Qt.translate
 
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+# Scene.render's names and what they are called here.
+COLOURINGS = (("material", QT_TRANSLATE_NOOP("Swarf", "Material")),
+              ("operation", QT_TRANSLATE_NOOP("Swarf", "By operation")), ("tool", QT_TRANSLATE_NOOP("Swarf", "By tool")),
+              ("age", QT_TRANSLATE_NOOP("Swarf", "By age")), ("feed", QT_TRANSLATE_NOOP("Swarf", "By feed")))
+
 # Milliseconds between two looks at the clock while playing.
 TICK_MS = 30
 
@@ -84,9 +91,8 @@ class LivePanel(QtWidgets.QDockWidget):
         stage_column = QtWidgets.QVBoxLayout(stage)
         stage_column.setContentsMargins(0, 0, 0, 0)
         stage_column.setSpacing(0)
-        self.banner = Banner()
-        stage_column.addWidget(self.banner)
         self.view = PictureView(self._swarf)
+        self.banner = Banner(self.view)
         stage_column.addWidget(self.view, 1)
         self.timeline = Timeline()
         stage_column.addWidget(self.timeline)
@@ -131,13 +137,21 @@ class LivePanel(QtWidgets.QDockWidget):
             self._icons[name] = action
             return action
 
-        noop = FreeCAD.Qt.QT_TRANSLATE_NOOP
+        noop = QT_TRANSLATE_NOOP
         add("fit", noop("Swarf", "Show the whole stock (F)"), lambda: self.view.fit())
         add("isometric", noop("Swarf", "Look from the corner (0); 1 to 6: the sides"),
             lambda: self.view.look("isometric"))
         add("perspective", noop("Swarf", "Perspective (P)"), self._set_perspective, settings.flag("Perspective"))
         add("cutter", noop("Swarf", "Show the cutter"), self._set_cutter, settings.flag("ShowCutter"), "cutter")
         add("path", noop("Swarf", "Show the tool's path"), self._set_path, settings.flag("ShowPath"), "path")
+        self.colouring = QtWidgets.QComboBox()
+        self.colouring.setObjectName("SwarfColouring")
+        self.colouring.setToolTip(translate("Swarf", "What the colours of the stock show"))
+        for name, text in COLOURINGS:
+            self.colouring.addItem(translate("Swarf", text), name)
+        self.colouring.activated.connect(lambda *_: self._wish())
+        if "colouring" in known:
+            bar.addWidget(self.colouring)
         spring = QtWidgets.QWidget()
         spring.setSizePolicy(QtWidgets.QSizePolicy.Expanding, QtWidgets.QSizePolicy.Preferred)
         bar.addWidget(spring)
@@ -357,7 +371,8 @@ class LivePanel(QtWidgets.QDockWidget):
     def _look(self):
         bottom, top = colours.background(self.palette())
         return (("background", bottom), ("background_top", top), ("occlusion", settings.flag("Occlusion")),
-                ("shadow", settings.flag("Shadow")), ("edges", True), ("colour", colours.MATERIAL))
+                ("shadow", settings.flag("Shadow")), ("edges", True),
+                ("colouring", self.colouring.currentData()), ("colour", colours.MATERIAL))
 
     def current_view(self, size=None):
         """session.View of what is shown, or of another size (width, height) of the picture."""
