@@ -44,18 +44,45 @@ swarf_status swarf_file_read(const char *path, char **data, size_t *length)
     return SWARF_OK;
 }
 
+/* The file that a path leads to through symbolic links, whether it exists or not: renaming over a link would replace
+ * the link. NULL with errno where there is no memory or the links go round. */
+static char *follow_links(const char *path)
+{
+    char *at = strdup(path);
+    for (int links = 0; at && links < 40; links++) { /* as many as Linux follows */
+        char target[4096];
+        const ssize_t length = readlink(at, target, sizeof target - 1);
+        if (length <= 0 || (size_t)length == sizeof target - 1) return at;
+        target[length] = 0;
+        const char *slash = strrchr(at, '/');
+        const size_t folder = target[0] == '/' || !slash ? 0 : (size_t)(slash - at) + 1;
+        char *next = malloc(folder + (size_t)length + 1);
+        if (next) {
+            memcpy(next, at, folder);
+            memcpy(next + folder, target, (size_t)length + 1);
+        }
+        free(at);
+        at = next;
+    }
+    if (at) errno = ELOOP;
+    free(at);
+    return NULL;
+}
+
 swarf_status swarf_file_begin(const char *path, swarf_file_writer *writer)
 {
     SWARF_REQUIRE(path && *path && writer, "file: path missing");
-    const size_t length = strlen(path);
-    char *copy = malloc(length + 1), *temporary = malloc(length + 8);
-    if (!copy || !temporary) {
+    char *copy = follow_links(path);
+    if (!copy)
+        return errno == ELOOP ? swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", path, strerror(errno))
+                              : swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
+    const size_t length = strlen(copy);
+    char *temporary = malloc(length + 8);
+    if (!temporary) {
         free(copy);
-        free(temporary);
         return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
     }
-    memcpy(copy, path, length + 1);
-    memcpy(temporary, path, length);
+    memcpy(temporary, copy, length);
     memcpy(temporary + length, ".XXXXXX", 8);
     const int descriptor = mkstemp(temporary);
     FILE *stream = NULL;

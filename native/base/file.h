@@ -21,7 +21,8 @@ typedef struct swarf_file_writer {
     char *temporary;
 } swarf_file_writer;
 
-/** Open for writing; on success close with swarf_file_commit() or swarf_file_abandon(). */
+/** Open for writing; a symbolic link stays and the file it leads to is replaced. On success close with
+ * swarf_file_commit() or swarf_file_abandon(). */
 swarf_status swarf_file_begin(const char *path, swarf_file_writer *writer);
 /** Flush, sync errors, rename; on failure the target is as it was and the temporary is gone. */
 swarf_status swarf_file_commit(swarf_file_writer *writer);

@@ -158,20 +158,36 @@ swarf_status swarf_mesh_read(const char *path, swarf_mesh **out)
     return swarf_mesh_adopt(&data, out);
 }
 
+static const struct format {
+    const char *suffix;
+    swarf_mesh_writer *write;
+} formats[] = {{"stl", swarf_stl_write},
+               {"ply", swarf_ply_write},
+               {"obj", swarf_obj_write},
+               {"3mf", swarf_3mf_write},
+               {"glb", swarf_gltf_write}};
+
 swarf_status swarf_mesh_write(const swarf_mesh *mesh, const char *path, const swarf_progress *progress)
 {
+    return swarf_mesh_write_colored(mesh, NULL, 0, path, progress);
+}
+
+swarf_status swarf_mesh_write_colored(const swarf_mesh *mesh, const uint8_t *rgb, size_t triangle_count,
+                                      const char *path, const swarf_progress *progress)
+{
     SWARF_REQUIRE(mesh && path, "mesh: NULL");
+    SWARF_REQUIRE(!rgb || triangle_count == mesh->data.triangle_count, "mesh: %zu colours for %zu triangles",
+                  triangle_count, mesh->data.triangle_count);
     char suffix[8];
     swarf_file_suffix(path, suffix, sizeof suffix);
-    swarf_status (*write)(const swarf_triangles *, FILE *, const swarf_progress *) = NULL;
-    if (strcmp(suffix, "stl") == 0) write = swarf_stl_write;
-    if (strcmp(suffix, "ply") == 0) write = swarf_ply_write;
-    if (strcmp(suffix, "obj") == 0) write = swarf_obj_write;
-    SWARF_REQUIRE(write, "%s: a mesh is written as .stl, .ply or .obj", path);
+    swarf_mesh_writer *write = NULL;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (strcmp(suffix, formats[i].suffix) == 0) write = formats[i].write;
+    SWARF_REQUIRE(write, "%s: a mesh is written as .stl, .ply, .obj, .3mf or .glb", path);
     const swarf_triangles triangles = view_of(&mesh->data);
     swarf_file_writer writer;
     SWARF_TRY(swarf_file_begin(path, &writer));
-    const swarf_status status = write(&triangles, writer.stream, progress);
+    const swarf_status status = write(&triangles, rgb, writer.stream, progress);
     if (status != SWARF_OK) {
         swarf_file_abandon(&writer);
         return status;

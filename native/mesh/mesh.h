@@ -37,10 +37,11 @@ swarf_status swarf_obj_read(const char *text, size_t length, const char *name, s
 /** 1 when the bytes are as long as the triangle count of a binary STL says. */
 int swarf_stl_is_binary(const char *text, size_t length);
 
-/** Writers to an open stream; write errors are found when the file is committed. */
-swarf_status swarf_stl_write(const swarf_triangles *triangles, FILE *stream, const swarf_progress *progress);
-swarf_status swarf_ply_write(const swarf_triangles *triangles, FILE *stream, const swarf_progress *progress);
-swarf_status swarf_obj_write(const swarf_triangles *triangles, FILE *stream, const swarf_progress *progress);
+/** Writers to an open stream; write errors are found when the file is committed. `rgb`: 3 bytes per triangle, NULL for
+ *  none; STL has no place for them. */
+typedef swarf_status swarf_mesh_writer(const swarf_triangles *triangles, const uint8_t *rgb, FILE *stream,
+                                       const swarf_progress *progress);
+swarf_mesh_writer swarf_stl_write, swarf_ply_write, swarf_obj_write, swarf_3mf_write, swarf_gltf_write;
 
 #ifdef __cplusplus
 }

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Wavefront OBJ: "v x y z" and "f a b c ...", corners as vertex[/texture[/normal]], numbers from 1 or, negative,
- * back from the last vertex. Polygons become fans. Everything that is not shape is skipped. */
+ * back from the last vertex. Polygons become fans. Everything that is not shape is skipped. Colours are written after a
+ * vertex's coordinates, 0 .. 1, as most programs read them. */
 #include "mesh/mesh.h"
 
 #include "base/parallel.h"
 #include "base/status.h"
+#include "mesh/colors.h"
 #include "mesh/text.h"
 
-#include <locale.h>
 #include <string.h>
 
 /* Elements between two progress reports. */
@@ -72,14 +73,18 @@ swarf_status swarf_obj_read(const char *data, size_t length, const char *name, s
     return SWARF_OK;
 }
 
-static swarf_status write_all(const swarf_triangles *t, FILE *stream, const swarf_progress *progress)
+static swarf_status write_all(const swarf_painted *p, FILE *stream, const swarf_progress *progress)
 {
+    const swarf_triangles *t = &p->triangles;
     const double total = (double)(t->vertex_count + t->triangle_count) + 1;
     fprintf(stream, "# Swarf, mm\n");
     for (size_t i = 0; i < t->vertex_count; i++) {
-        const float *p = t->xyz + 3 * i;
+        const float *at = t->xyz + 3 * i;
         /* 9 digits bring every float back */
-        fprintf(stream, "v %.9g %.9g %.9g\n", (double)p[0], (double)p[1], (double)p[2]);
+        fprintf(stream, "v %.9g %.9g %.9g", (double)at[0], (double)at[1], (double)at[2]);
+        if (p->vertex_rgb)
+            for (int c = 0; c < 3; c++) fprintf(stream, " %.4g", p->vertex_rgb[3 * i + (size_t)c] / 255.0);
+        fputc('\n', stream);
         if (i % CHUNK == 0) SWARF_TRY(swarf_progress_report(progress, (double)i / total));
     }
     for (size_t i = 0; i < t->triangle_count; i++) {
@@ -90,13 +95,16 @@ static swarf_status write_all(const swarf_triangles *t, FILE *stream, const swar
     return swarf_progress_report(progress, 1.0);
 }
 
-swarf_status swarf_obj_write(const swarf_triangles *t, FILE *stream, const swarf_progress *progress)
+swarf_status swarf_obj_write(const swarf_triangles *t, const uint8_t *rgb, FILE *stream, const swarf_progress *progress)
 {
-    const locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!plain) return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
-    const locale_t before = uselocale(plain); /* this thread's only */
-    const swarf_status status = write_all(t, stream, progress);
-    uselocale(before);
-    freelocale(plain);
+    swarf_painted painted;
+    locale_t kept;
+    SWARF_TRY(swarf_painted_create(t, rgb, &painted));
+    swarf_status status = swarf_text_locale_begin(&kept);
+    if (status == SWARF_OK) {
+        status = write_all(&painted, stream, progress);
+        swarf_text_locale_end(kept);
+    }
+    swarf_painted_free(&painted);
     return status;
 }

@@ -265,24 +265,30 @@ static void put_u32(unsigned char *p, uint32_t value)
     for (int i = 0; i < 4; i++) p[i] = (unsigned char)(value >> (8 * i));
 }
 
-static void put_vertex(const swarf_triangles *t, size_t i, unsigned char *p)
+typedef struct writing {
+    const swarf_triangles *t;
+    const uint8_t *rgb;
+} writing;
+
+static void put_vertex(const writing *w, size_t i, unsigned char *p)
 {
     for (int c = 0; c < 3; c++) {
         uint32_t bits;
-        memcpy(&bits, t->xyz + 3 * i + c, sizeof bits);
+        memcpy(&bits, w->t->xyz + 3 * i + c, sizeof bits);
         put_u32(p + 4 * c, bits);
     }
 }
 
-static void put_face(const swarf_triangles *t, size_t i, unsigned char *p)
+static void put_face(const writing *w, size_t i, unsigned char *p)
 {
     p[0] = 3;
-    for (int k = 0; k < 3; k++) put_u32(p + 1 + 4 * k, t->index[3 * i + (size_t)k]);
+    for (int k = 0; k < 3; k++) put_u32(p + 1 + 4 * k, w->t->index[3 * i + (size_t)k]);
+    if (w->rgb) memcpy(p + 13, w->rgb + 3 * i, 3);
 }
 
 /* `count` records of `size` bytes through one buffer; `from`..`to` is their part of the progress. */
-static swarf_status write_records(const swarf_triangles *t, size_t count, size_t size,
-                                  void (*put)(const swarf_triangles *, size_t, unsigned char *), FILE *stream,
+static swarf_status write_records(const writing *w, size_t count, size_t size,
+                                  void (*put)(const writing *, size_t, unsigned char *), FILE *stream,
                                   const swarf_progress *progress, double from, double to)
 {
     unsigned char *buffer = malloc(CHUNK * size);
@@ -290,7 +296,7 @@ static swarf_status write_records(const swarf_triangles *t, size_t count, size_t
     swarf_status status = SWARF_OK;
     for (size_t first = 0; first < count && status == SWARF_OK; first += CHUNK) {
         const size_t part = count - first < CHUNK ? count - first : CHUNK;
-        for (size_t i = 0; i < part; i++) put(t, first + i, buffer + i * size);
+        for (size_t i = 0; i < part; i++) put(w, first + i, buffer + i * size);
         fwrite(buffer, size, part, stream);
         status = swarf_progress_report(progress, from + (to - from) * (double)(first + part) / (double)count);
     }
@@ -298,13 +304,15 @@ static swarf_status write_records(const swarf_triangles *t, size_t count, size_t
     return status;
 }
 
-swarf_status swarf_ply_write(const swarf_triangles *t, FILE *stream, const swarf_progress *progress)
+swarf_status swarf_ply_write(const swarf_triangles *t, const uint8_t *rgb, FILE *stream, const swarf_progress *progress)
 {
-    fprintf(
-        stream,
-        "ply\nformat binary_little_endian 1.0\ncomment Swarf, mm\nelement vertex %zu\nproperty float x\n"
-        "property float y\nproperty float z\nelement face %zu\nproperty list uchar uint vertex_indices\nend_header\n",
-        t->vertex_count, t->triangle_count);
-    SWARF_TRY(write_records(t, t->vertex_count, 12, put_vertex, stream, progress, 0, 0.3));
-    return write_records(t, t->triangle_count, 13, put_face, stream, progress, 0.3, 1);
+    const writing w = {t, rgb};
+    fprintf(stream,
+            "ply\nformat binary_little_endian 1.0\ncomment Swarf, mm\nelement vertex %zu\nproperty float x\n"
+            "property float y\nproperty float z\nelement face %zu\nproperty list uchar uint vertex_indices\n%s"
+            "end_header\n",
+            t->vertex_count, t->triangle_count,
+            rgb ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "");
+    SWARF_TRY(write_records(&w, t->vertex_count, 12, put_vertex, stream, progress, 0, 0.3));
+    return write_records(&w, t->triangle_count, rgb ? 16 : 13, put_face, stream, progress, 0.3, 1);
 }

@@ -46,6 +46,11 @@ static swarf_status read_binary(const char *text, size_t length, const char *nam
         return swarf_fail(SWARF_ERROR_FORMAT,
                           "%s: cut short: its header claims %zu triangles, but %zu bytes hold only %zu", name, claimed,
                           length, there);
+    if (claimed < there || (length - HEADER) % RECORD)
+        return swarf_fail(SWARF_ERROR_FORMAT,
+                          "%s: its header claims %zu triangles, %zu bytes, but the file has %zu: the count is wrong or "
+                          "something else follows",
+                          name, claimed, claimed * RECORD + HEADER, length);
     for (size_t i = 0; i < claimed; i++) {
         const char *record = text + HEADER + i * RECORD;
         for (int k = 0; k < 3; k++) {
@@ -154,8 +159,9 @@ static void write_record(const swarf_triangles *t, size_t i, unsigned char *reco
     record[48] = record[49] = 0;
 }
 
-swarf_status swarf_stl_write(const swarf_triangles *t, FILE *stream, const swarf_progress *progress)
+swarf_status swarf_stl_write(const swarf_triangles *t, const uint8_t *rgb, FILE *stream, const swarf_progress *progress)
 {
+    (void)rgb;
     if (t->triangle_count > UINT32_MAX)
         return swarf_fail(SWARF_ERROR_ARGUMENT, "mesh: %zu triangles are more than an STL file can count",
                           t->triangle_count);

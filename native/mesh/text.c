@@ -8,28 +8,31 @@
 #include <math.h>
 #include <string.h>
 
-static int is_blank(char c)
+/* Lines end with LF, CR LF, or a CR alone as on old Macintoshes; the 0 byte after the text makes at[1] safe. */
+static int is_blank(const char *at)
 {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+    return *at == ' ' || *at == '\t' || *at == '\v' || *at == '\f' || (*at == '\r' && at[1] == '\n');
+}
+
+static int is_line_end(const char *at)
+{
+    return *at == '\n' || (*at == '\r' && at[1] != '\n');
 }
 
 swarf_word swarf_text_word(swarf_text *text)
 {
-    while (text->at < text->end && is_blank(*text->at)) text->at++;
+    while (text->at < text->end && is_blank(text->at)) text->at++;
     swarf_word word = {text->at, 0};
-    while (text->at < text->end && !is_blank(*text->at) && *text->at != '\n') text->at++;
+    while (text->at < text->end && !is_blank(text->at) && !is_line_end(text->at)) text->at++;
     word.length = (size_t)(text->at - word.at);
     return word;
 }
 
 int swarf_text_next_line(swarf_text *text)
 {
-    const char *found = memchr(text->at, '\n', (size_t)(text->end - text->at));
-    if (!found) {
-        text->at = text->end;
-        return 0;
-    }
-    text->at = found + 1;
+    while (text->at < text->end && !is_line_end(text->at)) text->at++;
+    if (text->at == text->end) return 0;
+    text->at++;
     text->line++;
     return 1;
 }
@@ -78,4 +81,17 @@ swarf_status swarf_text_fail(const swarf_text *text, swarf_word word, const char
     const int shown = word.length < 40 ? (int)word.length : 40;
     return swarf_fail(SWARF_ERROR_FORMAT, "%s:%zu: '%.*s': %s expected", text->name, text->line, shown, word.at,
                       wanted);
+}
+
+swarf_status swarf_text_locale_begin(locale_t *kept)
+{
+    const locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (!plain) return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
+    *kept = uselocale(plain);
+    return SWARF_OK;
+}
+
+void swarf_text_locale_end(locale_t kept)
+{
+    freelocale(uselocale(kept));
 }

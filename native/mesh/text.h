@@ -5,6 +5,8 @@
 
 #include "swarf/base.h"
 
+#include <locale.h>
+
 /** Where a reader stands. The text ends with a 0 byte at `end`. */
 typedef struct swarf_text {
     const char *at;
@@ -30,6 +32,9 @@ int swarf_word_is(swarf_word word, const char *wanted);
 int swarf_word_number(swarf_word word, double *out);
 /** The whole word as a whole number within +-2^53. */
 int swarf_word_integer(swarf_word word, int64_t *out);
+/** Decimal points are points until swarf_text_locale_end(), for this thread alone. */
+swarf_status swarf_text_locale_begin(locale_t *kept);
+void swarf_text_locale_end(locale_t kept);
 /** SWARF_ERROR_FORMAT: "name:line: 'word': wanted". */
 swarf_status swarf_text_fail(const swarf_text *text, swarf_word word, const char *wanted);
 

@@ -59,6 +59,23 @@ static void check_object(void)
     shape_free(&box);
 }
 
+/* Writing through links replaces what they lead to and leaves them links. */
+static void check_links(const swarf_mesh *mesh)
+{
+    struct stat info;
+    CHECK(mkdir(in_folder("sub"), 0700) == 0);
+    CHECK(symlink("sub/real.stl", in_folder("first.stl")) == 0);
+    CHECK(symlink("first.stl", in_folder("second.stl")) == 0);
+    for (int round = 0; round < 2; round++) { /* once made, once replaced */
+        CHECK_OK(swarf_mesh_write(mesh, in_folder("second.stl"), NULL));
+        CHECK(lstat(in_folder("second.stl"), &info) == 0 && S_ISLNK(info.st_mode));
+        CHECK(lstat(in_folder("first.stl"), &info) == 0 && S_ISLNK(info.st_mode));
+        CHECK(lstat(in_folder("sub/real.stl"), &info) == 0 && S_ISREG(info.st_mode));
+    }
+    CHECK(symlink("ring.stl", in_folder("ring.stl")) == 0);
+    CHECK_FAILS(swarf_mesh_write(mesh, in_folder("ring.stl"), NULL), SWARF_ERROR_IO, "ring.stl");
+}
+
 /* Every format brings back the same floats; STL renumbers the vertices. */
 static void check_round_trips(void)
 {
@@ -85,9 +102,10 @@ static void check_round_trips(void)
         CHECK(same);
         swarf_mesh_release(back);
     }
-    CHECK_FAILS(swarf_mesh_write(mesh, in_folder("a.step"), NULL), SWARF_ERROR_ARGUMENT, ".stl, .ply or .obj");
+    CHECK_FAILS(swarf_mesh_write(mesh, in_folder("a.step"), NULL), SWARF_ERROR_ARGUMENT, ".obj, .3mf or .glb");
     CHECK_FAILS(swarf_mesh_write(mesh, "/nowhere/a.stl", NULL), SWARF_ERROR_IO, "/nowhere/a.stl");
     CHECK_FAILS(swarf_mesh_write(NULL, in_folder("a.stl"), NULL), SWARF_ERROR_ARGUMENT, NULL);
+    check_links(mesh);
     swarf_mesh_release(mesh);
     shape_free(&ball);
 }
@@ -117,6 +135,15 @@ static void check_text_formats(void)
         CHECK_NEAR(swarf_mesh_topology(mesh).area_mm2, 1, 1e-9);
         swarf_mesh_release(mesh);
     }
+    /* lines that end with CR alone */
+    char old[sizeof stl];
+    for (size_t i = 0; i < sizeof stl; i++) old[i] = stl[i] == '\n' ? '\r' : stl[i];
+    if (CHECK_OK(read_text("t.stl", old, &mesh))) {
+        CHECK_NEAR(swarf_mesh_topology(mesh).area_mm2, 0.75, 1e-9);
+        swarf_mesh_release(mesh);
+    }
+    CHECK_FAILS(read_text("t.stl", "solid a\rfacet normal 0 0 1\router loop\rvertex 0 0 zero\r", &mesh),
+                SWARF_ERROR_FORMAT, "t.stl:4: 'zero'");
     /* big-endian PLY: the numbers 1, 2, 3 and a face */
     static const char head[] =
         "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty short y\n"
@@ -182,6 +209,12 @@ static void check_refusals(void)
     memset(stl + 96, 0xff, 12);
     put("e.stl", stl, sizeof stl);
     CHECK_FAILS(swarf_mesh_read(in_folder("e.stl"), &mesh), SWARF_ERROR_FORMAT, "triangle 1");
+    unsigned char longer[134 + 50] = {0};
+    longer[80] = 1;
+    put("e.stl", longer, sizeof longer);
+    CHECK_FAILS(swarf_mesh_read(in_folder("e.stl"), &mesh), SWARF_ERROR_FORMAT, "claims 1 triangles, 134 bytes");
+    put("e.stl", longer, 137);
+    CHECK_FAILS(swarf_mesh_read(in_folder("e.stl"), &mesh), SWARF_ERROR_FORMAT, "the file has 137");
     CHECK_FAILS(swarf_mesh_read(in_folder("none.stl"), &mesh), SWARF_ERROR_IO, "none.stl");
     CHECK_FAILS(swarf_mesh_read(folder, &mesh), SWARF_ERROR_IO, "folder");
     CHECK(mesh == NULL);

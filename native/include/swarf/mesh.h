@@ -14,13 +14,49 @@ typedef struct swarf_mesh swarf_mesh;
 /** Copies the triangles. SWARF_ERROR_ARGUMENT for an index out of range or numbers not finite. */
 SWARF_API swarf_status swarf_mesh_create(const swarf_triangles *triangles, swarf_mesh **out);
 /** From a stock by OpenVDB's mesher; adaptivity 0 (uniform) .. 1. Closed and oriented outwards, or
- *  SWARF_ERROR_INTERNAL; an empty stock gives an empty mesh. */
+ *  SWARF_ERROR_INTERNAL; an empty stock gives an empty mesh. Edges come out rounded, and an adaptivity above 0 loses
+ *  volume: swarf_mesh_contour() does neither. */
 SWARF_API swarf_status swarf_mesh_create_stock(swarf_stock *stock, double adaptivity, const swarf_progress *progress,
                                                swarf_mesh **out);
+
+/** How a stock becomes a mesh with sharp edges. */
+typedef struct swarf_contour_options {
+    size_t size;            /**< sizeof(swarf_contour_options) */
+    double error_mm;        /**< >= 0; vertices are left out while the mesh stays this near to the full one */
+    size_t triangle_budget; /**< no more triangles than this, 0: no limit */
+} swarf_contour_options;
+
+/** Error 0 (every vertex), no budget. */
+SWARF_API swarf_contour_options swarf_contour_options_default(void);
+
+/** What making a mesh came to. */
+typedef struct swarf_contour_report {
+    size_t full_triangles;      /**< before vertices were left out */
+    size_t triangles;           /**< in the mesh */
+    size_t sharp_vertices;      /**< on edges and corners, before vertices were left out */
+    size_t parted_cells;        /**< cells that the surface passes more than once */
+    size_t intersections_found; /**< pairs of triangles that cut each other and were put right */
+    size_t intersections_left;  /**< pairs that still do: 0 unless the surface itself touches itself */
+    double error_mm;            /**< bound of the distance between the mesh and the full one */
+    int budget_met;             /**< 0 when error_mm stopped it above triangle_budget */
+} swarf_contour_report;
+
+/** From a stock by dual contouring: a closed, oriented 2-manifold whose vertices lie on the surface and its edges.
+ *  `report` may be NULL. An empty stock gives an empty mesh. SWARF_ERROR_GEOMETRY: material reaches the border of the
+ *  level set, which a file of another program may do. The result does not depend on the number of threads. */
+SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options *options,
+                                          const swarf_progress *progress, swarf_mesh **out,
+                                          swarf_contour_report *report);
+
 /** Read .stl (binary or text, welded), .ply or .obj by its content. SWARF_ERROR_IO / SWARF_ERROR_FORMAT. */
 SWARF_API swarf_status swarf_mesh_read(const char *path, swarf_mesh **out);
-/** Write .stl (binary), .ply (binary) or .obj by the suffix; written beside and renamed. */
+/** Write .stl (binary), .ply (binary), .obj, .3mf or .glb (glTF, in metres, y up) by the suffix; written beside and
+ *  renamed. SWARF_ERROR_ARGUMENT: another suffix, or more than the format can count; SWARF_ERROR_IO. */
 SWARF_API swarf_status swarf_mesh_write(const swarf_mesh *mesh, const char *path, const swarf_progress *progress);
+/** The same with a colour per triangle (3 bytes each; NULL: none): of faces in .ply and .3mf, of vertices (split where
+ *  colours meet) in .obj and .glb; .stl leaves them out. */
+SWARF_API swarf_status swarf_mesh_write_colored(const swarf_mesh *mesh, const uint8_t *rgb, size_t triangle_count,
+                                                const char *path, const swarf_progress *progress);
 SWARF_API swarf_mesh *swarf_mesh_retain(swarf_mesh *mesh);
 SWARF_API void swarf_mesh_release(swarf_mesh *mesh);
 

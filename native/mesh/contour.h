@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Dual contouring: what its files share.
+ *
+ *   cell (i, j, k): the cube between the centres of voxels (i, j, k) and (i+1, j+1, k+1) of the stock's layout.
+ *   crossing: where the surface crosses the grid edge from a voxel along +x, +y or +z; owned by that voxel's block.
+ *   block: 8^3 voxels, the cells whose low corner they are, and the edges that start at them.
+ *   cycle: one closed polygon of crossings on the faces of a cell; each gets one vertex, so that sheets that pass
+ *   through one cell stay apart.
+ *
+ * Every crossing becomes a quadrilateral of the vertices of the four cells round its edge. Three passes over the blocks
+ * (crossings, vertices, faces), each in parallel, each block written by one thread, numbered by prefix sums: the result
+ * is the same for any number of threads.
+ */
+#ifndef SWARF_MESH_CONTOUR_H
+#define SWARF_MESH_CONTOUR_H
+
+#include "mesh/facets.h"
+#include "stock/stock.h"
+#include "swarf/mesh.h"
+
+/** Voxels along an edge of what a block reads: itself, one below, two above. */
+enum { SWARF_HALO = 11 };
+
+/** A face of a cell, axis * 2 + side; none. */
+enum { SWARF_NO_FACE = 255 };
+
+/** How the crossings on the edges of one cell are joined. Edge number: axis * 4 + offset along the next axis * 2 +
+ *  offset along the one after. */
+typedef struct contour_case {
+    uint8_t count;       /* cycles, 0 .. 4 */
+    uint8_t of_edge[12]; /* cycle of a crossed edge */
+    uint8_t
+        twice_on_face; /* the face with four crossings that one cycle passes twice, SWARF_NO_FACE if there is none */
+} contour_case;
+
+/** By the signs of the corners (bit x * 4 + y * 2 + z set: material); [1]: the face twice_on_face joined the other
+ *  way. */
+typedef struct contour_table {
+    contour_case entry[256][2];
+} contour_table;
+
+void swarf_contour_table_fill(contour_table *table);
+
+/** A crossing, `t` from its voxel to the next, the normal out of the material. */
+typedef struct contour_crossing {
+    float t;
+    float normal[3];
+} contour_crossing;
+
+/** An active cell of a block. */
+typedef struct contour_cell {
+    uint16_t first; /* vertex, from the block's first one */
+    uint8_t config; /* signs of its corners */
+    uint8_t flip;   /* which entry of the table */
+} contour_cell;
+
+typedef struct contour_vertex {
+    float xyz[3]; /* mm */
+} contour_vertex;
+
+typedef struct contour_block {
+    int32_t ijk[3];
+    uint32_t crossing_count;
+    uint64_t edge_mask[3][8]; /* [axis][x], bit y * 8 + z */
+    uint16_t edge_rank[3][8]; /* crossings before that word */
+    uint64_t cell_mask[8];
+    uint16_t cell_rank[8];
+    uint64_t keep_mask[8]; /* cells near facets that cut each other: their vertices stay */
+    uint64_t kept_mask[8]; /* the same, one attempt ago */
+    uint64_t calm_mask[8]; /* where that was not enough: vertices in the middle of their crossings */
+    uint32_t vertex_count;
+    uint32_t facet_count;
+    uint32_t centre_count; /* vertices on crossings, of quadrilaterals cut into four */
+    uint32_t sharp_count;  /* vertices on edges and corners of the surface */
+    size_t vertex_first;   /* of the whole mesh */
+    size_t centre_first;
+    size_t facet_first;
+    contour_crossing *crossings;
+    contour_cell *cells;
+    contour_vertex *vertices;
+    contour_vertex *centres;
+    swarf_facet *facets; /* vertex numbers of the whole mesh; centres counted from 0, marked by SWARF_CENTRE */
+} contour_block;
+
+/** Marks a vertex number as a centre's while centres have no place yet. */
+#define SWARF_CENTRE 0x80000000u
+
+typedef struct contour {
+    const swarf_stock *stock;
+    const swarf_tree_layout *layout;
+    contour_table table;
+    contour_block *blocks;
+    size_t block_count;
+    uint32_t *block_at; /* by node * 4096 + slot; UINT32_MAX: none */
+} contour;
+
+/** Blocks that cells of the surface may lie in. */
+swarf_status swarf_contour_blocks(contour *work);
+/** The passes, one block each. */
+swarf_status swarf_contour_cross(contour *work, contour_block *block);
+swarf_status swarf_contour_place(contour *work, contour_block *block);
+swarf_status swarf_contour_join(contour *work, contour_block *block);
+void swarf_contour_free(contour *work);
+
+/** Values of a block's voxels with their halo: index ((x + 1) * 11 + y + 1) * 11 + z + 1. */
+void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values[SWARF_HALO * SWARF_HALO * SWARF_HALO]);
+/** The block that holds a voxel, NULL where there is none. */
+contour_block *swarf_contour_block_at(const contour *work, const int32_t ijk[3]);
+/** The crossing of an edge, which must exist. */
+const contour_crossing *swarf_contour_crossing(const contour *work, const int32_t voxel[3], int axis);
+/** What is known of one cycle, in voxels from the low corner of its cell. */
+typedef struct contour_polygon {
+    int count;
+    double point[12][3];
+    double normal[12][3];
+    double corner[8]; /* the field, in voxels */
+} contour_polygon;
+
+/** Place the vertex of a cycle inside its cell; returns how many independent faces meet there (1 smooth, 2 on an edge,
+ *  3 on a corner). */
+int swarf_contour_vertex(const contour_polygon *polygon, double out[3]);
+
+#endif

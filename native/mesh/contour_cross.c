@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* First pass of contouring: the blocks, their values, and where the surface crosses their edges. */
+#include "base/memory.h"
+#include "base/status.h"
+#include "mesh/contour.h"
+#include "stock/leaf.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Block coordinates -> place in block_at; -1 outside the layout. */
+static ptrdiff_t place_of(const swarf_tree_layout *layout, const int32_t ijk[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (ijk[k] < 0 || ijk[k] >= layout->count[k] * SWARF_NODE_DIM) return -1;
+    const size_t node =
+        ((size_t)(ijk[0] >> 7) * (size_t)layout->count[1] + (size_t)(ijk[1] >> 7)) * (size_t)layout->count[2] +
+        (size_t)(ijk[2] >> 7);
+    const int slot = (ijk[0] >> 3 & 15) << 8 | (ijk[1] >> 3 & 15) << 4 | (ijk[2] >> 3 & 15);
+    return (ptrdiff_t)(node * SWARF_NODE_SLOTS + (size_t)slot);
+}
+
+contour_block *swarf_contour_block_at(const contour *work, const int32_t ijk[3])
+{
+    const ptrdiff_t place = place_of(work->layout, ijk);
+    return place < 0 || work->block_at[place] == UINT32_MAX ? NULL : &work->blocks[work->block_at[place]];
+}
+
+/* A cell of the surface has a corner in a leaf, so its low corner lies in that leaf or in one of the seven below. */
+swarf_status swarf_contour_blocks(contour *work)
+{
+    const swarf_tree_layout *layout = work->layout;
+    const size_t nodes = swarf_layout_nodes(layout), places = nodes * SWARF_NODE_SLOTS;
+    swarf_leaf *leaves;
+    size_t leaf_count;
+    SWARF_TRY(swarf_stock_leaves(work->stock, &leaves, &leaf_count));
+    work->block_at = malloc((places ? places : 1) * sizeof *work->block_at);
+    if (!work->block_at) {
+        free(leaves);
+        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for %zu nodes", nodes);
+    }
+    memset(work->block_at, 0xff, places * sizeof *work->block_at);
+    for (size_t i = 0; i < leaf_count; i++)
+        for (int c = 0; c < 8; c++) {
+            const int32_t ijk[3] = {leaves[i].ijk[0] - (c >> 2 & 1) * SWARF_LEAF_DIM,
+                                    leaves[i].ijk[1] - (c >> 1 & 1) * SWARF_LEAF_DIM,
+                                    leaves[i].ijk[2] - (c & 1) * SWARF_LEAF_DIM};
+            const ptrdiff_t place = place_of(layout, ijk);
+            if (place >= 0) work->block_at[place] = 0;
+        }
+    free(leaves);
+    for (size_t place = 0; place < places; place++)
+        if (work->block_at[place] == 0) work->block_at[place] = (uint32_t)work->block_count++;
+    work->blocks = calloc(work->block_count ? work->block_count : 1, sizeof *work->blocks);
+    if (!work->blocks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for %zu blocks", work->block_count);
+    for (size_t place = 0; place < places; place++) {
+        if (work->block_at[place] == UINT32_MAX) continue;
+        int32_t origin[3];
+        swarf_node_corner(layout, place / SWARF_NODE_SLOTS, origin);
+        swarf_leaf_corner(origin, (unsigned)(place % SWARF_NODE_SLOTS), work->blocks[work->block_at[place]].ijk);
+    }
+    return SWARF_OK;
+}
+
+void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values[SWARF_HALO * SWARF_HALO * SWARF_HALO])
+{
+    const swarf_tree_layout *layout = work->layout;
+    /* along an axis the neighbours below, itself and above give 1, 8 and 2 voxels */
+    static const int first[3] = {7, 0, 0}, count[3] = {1, 8, 2}, start[3] = {0, 1, 9};
+    for (int c = 0; c < 27; c++) {
+        const int part[3] = {c / 9, c / 3 % 3, c % 3};
+        int32_t corner[3];
+        for (int k = 0; k < 3; k++) corner[k] = ijk[k] + (part[k] - 1) * SWARF_LEAF_DIM;
+        const ptrdiff_t place = place_of(layout, corner);
+        const float *leaf = NULL;
+        float tile = layout->background;
+        if (place >= 0) {
+            const size_t node = (size_t)place / SWARF_NODE_SLOTS;
+            const unsigned slot = (unsigned)((size_t)place % SWARF_NODE_SLOTS);
+            leaf = swarf_tree_leaf(work->stock->tree, node, slot);
+            if (!leaf && swarf_tree_tile_inside(work->stock->tree, node, slot)) tile = -layout->background;
+        }
+        for (int x = 0; x < count[part[0]]; x++)
+            for (int y = 0; y < count[part[1]]; y++) {
+                float *to =
+                    values + ((start[part[0]] + x) * SWARF_HALO + start[part[1]] + y) * SWARF_HALO + start[part[2]];
+                const int from = (first[part[0]] + x) * 64 + (first[part[1]] + y) * 8 + first[part[2]];
+                for (int z = 0; z < count[part[2]]; z++) to[z] = leaf ? leaf[from + z] : tile;
+            }
+    }
+}
+
+static const int stride[3] = {SWARF_HALO * SWARF_HALO, SWARF_HALO, 1};
+
+/* From the field: linear along the edge; the gradient by differences along it and central ones across. */
+static void cross_edge(const float *at, int axis, contour_crossing *out)
+{
+    const double low = at[0], high = at[stride[axis]], t = low / (low - high);
+    double normal[3], square = 0;
+    for (int k = 0; k < 3; k++) {
+        const float *next = at + stride[axis];
+        normal[k] = k == axis ? 2 * (high - low)
+                              : (1 - t) * ((double)at[stride[k]] - at[-stride[k]]) +
+                                    t * ((double)next[stride[k]] - next[-stride[k]]);
+        square += normal[k] * normal[k];
+    }
+    const double length = sqrt(square); /* the part along the edge is not 0: the signs differ */
+    for (int k = 0; k < 3; k++) out->normal[k] = (float)(normal[k] / length);
+    out->t = (float)t;
+}
+
+swarf_status swarf_contour_cross(contour *work, contour_block *block)
+{
+    float values[SWARF_HALO * SWARF_HALO * SWARF_HALO];
+    swarf_contour_fetch(work, block->ijk, values);
+    uint32_t count = 0;
+    for (int axis = 0; axis < 3; axis++)
+        for (int x = 0; x < 8; x++) {
+            uint64_t word = 0;
+            for (int y = 0; y < 8; y++) {
+                const float *row = values + ((x + 1) * SWARF_HALO + y + 1) * SWARF_HALO + 1;
+                for (int z = 0; z < 8; z++)
+                    word |= (uint64_t)((row[z] < 0) != (row[z + stride[axis]] < 0)) << (y * 8 + z);
+            }
+            block->edge_mask[axis][x] = word;
+            block->edge_rank[axis][x] = (uint16_t)count;
+            count += (uint32_t)__builtin_popcountll(word);
+        }
+    block->crossing_count = count;
+    if (count == 0) return SWARF_OK;
+    block->crossings = malloc(count * sizeof *block->crossings);
+    if (!block->crossings) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for crossings");
+    contour_crossing *next = block->crossings;
+    for (int axis = 0; axis < 3; axis++)
+        for (int x = 0; x < 8; x++)
+            for (uint64_t word = block->edge_mask[axis][x]; word; word &= word - 1) {
+                const int bit = __builtin_ctzll(word);
+                cross_edge(values + ((x + 1) * SWARF_HALO + (bit >> 3) + 1) * SWARF_HALO + (bit & 7) + 1, axis, next++);
+            }
+    return SWARF_OK;
+}
+
+const contour_crossing *swarf_contour_crossing(const contour *work, const int32_t voxel[3], int axis)
+{
+    const contour_block *block = swarf_contour_block_at(work, voxel);
+    const int bit = (voxel[1] & 7) * 8 + (voxel[2] & 7);
+    if (!block) return NULL;
+    const uint64_t word = block->edge_mask[axis][voxel[0] & 7];
+    if (!(word >> bit & 1)) return NULL;
+    return block->crossings + block->edge_rank[axis][voxel[0] & 7] +
+           __builtin_popcountll(word & ((UINT64_C(1) << bit) - 1));
+}
+
+void swarf_contour_free(contour *work)
+{
+    for (size_t i = 0; work->blocks && i < work->block_count; i++) {
+        contour_block *block = &work->blocks[i];
+        free(block->crossings);
+        free(block->cells);
+        free(block->vertices);
+        free(block->centres);
+        free(block->facets);
+    }
+    free(work->blocks);
+    free(work->block_at);
+    memset(work, 0, sizeof *work);
+}

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Second and third pass of contouring: a vertex per cycle of every active cell, then a quadrilateral per crossing. */
+#include "base/status.h"
+#include "mesh/contour.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int config_at(const float *values, int x, int y, int z)
+{
+    int config = 0;
+    for (int c = 0; c < 8; c++)
+        config |= (values[((x + 1 + (c >> 2)) * SWARF_HALO + y + 1 + (c >> 1 & 1)) * SWARF_HALO + z + 1 + (c & 1)] < 0)
+                  << c;
+    return config;
+}
+
+/* Whether the cell's face that its cycle passes twice is one that the cycle of the cell behind it passes twice too. */
+static int is_flipped(const contour *work, const float *values, int config, const int at[3])
+{
+    const int face = work->table.entry[config][0].twice_on_face;
+    if (face == SWARF_NO_FACE) return 0;
+    int other[3] = {at[0], at[1], at[2]};
+    other[face / 2] += face % 2 ? 1 : -1;
+    const int behind = config_at(values, other[0], other[1], other[2]);
+    return work->table.entry[behind][0].twice_on_face == (face ^ 1);
+}
+
+/* Gather the crossings of one cycle. */
+static void gather(const contour *work, const contour_block *block, const int at[3], const contour_case *joined,
+                   int config, int cycle, contour_polygon *out)
+{
+    out->count = 0;
+    for (int edge = 0; edge < 12; edge++) {
+        const int axis = edge / 4, b = (axis + 1) % 3, c = (axis + 2) % 3;
+        int offset[3] = {0, 0, 0};
+        offset[b] = edge >> 1 & 1;
+        offset[c] = edge & 1;
+        const int low = offset[0] * 4 + offset[1] * 2 + offset[2], high = low + (4 >> axis);
+        if ((config >> low & 1) == (config >> high & 1) || joined->of_edge[edge] != cycle) continue;
+        int32_t voxel[3];
+        for (int k = 0; k < 3; k++) voxel[k] = block->ijk[k] + at[k] + offset[k];
+        const contour_crossing *crossing = swarf_contour_crossing(work, voxel, axis);
+        if (!crossing) continue; /* beyond the layout: the mesh will be found open */
+        const int i = out->count++;
+        for (int k = 0; k < 3; k++) {
+            out->point[i][k] = offset[k] + (k == axis ? crossing->t : 0);
+            out->normal[i][k] = crossing->normal[k];
+        }
+    }
+}
+
+static void place_calm(const contour_polygon *polygon, double out[3])
+{
+    for (int k = 0; k < 3; k++) {
+        out[k] = 0;
+        for (int i = 0; i < polygon->count; i++) out[k] += polygon->point[i][k] / polygon->count;
+    }
+}
+
+static void place_cell(contour *work, contour_block *block, const float *values, int index, contour_cell *cell,
+                       uint32_t *used)
+{
+    const swarf_tree_layout *layout = work->layout;
+    const int at[3] = {index >> 6, index >> 3 & 7, index & 7};
+    const contour_case *joined = &work->table.entry[cell->config][cell->flip];
+    const int calm = (int)(block->calm_mask[at[0]] >> (index & 63) & 1);
+    contour_polygon polygon;
+    for (int c = 0; c < 8; c++)
+        polygon.corner[c] =
+            (double)values[((at[0] + 1 + (c >> 2)) * SWARF_HALO + at[1] + 1 + (c >> 1 & 1)) * SWARF_HALO + at[2] + 1 +
+                           (c & 1)] /
+            layout->voxel;
+    cell->first = (uint16_t)*used;
+    for (int cycle = 0; cycle < joined->count; cycle++) {
+        double inside[3] = {0.5, 0.5, 0.5};
+        gather(work, block, at, joined, cell->config, cycle, &polygon);
+        if (calm)
+            place_calm(&polygon, inside);
+        else if (polygon.count > 0 && swarf_contour_vertex(&polygon, inside) > 1)
+            block->sharp_count++;
+        for (int k = 0; k < 3; k++)
+            block->vertices[*used].xyz[k] =
+                (float)(layout->origin[k] + (block->ijk[k] + at[k] + inside[k]) * layout->voxel);
+        (*used)++;
+    }
+}
+
+swarf_status swarf_contour_place(contour *work, contour_block *block)
+{
+    float values[SWARF_HALO * SWARF_HALO * SWARF_HALO];
+    contour_cell cells[SWARF_LEAF_SIZE];
+    uint32_t cell_count = 0, vertex_count = 0;
+    swarf_contour_fetch(work, block->ijk, values);
+    block->sharp_count = 0;
+    unsigned inside[9][9]; /* signs of the rows along z */
+    for (int x = 0; x < 9; x++)
+        for (int y = 0; y < 9; y++) {
+            const float *row = values + ((x + 1) * SWARF_HALO + y + 1) * SWARF_HALO + 1;
+            inside[x][y] = 0;
+            for (int z = 0; z < 9; z++) inside[x][y] |= (unsigned)(row[z] < 0) << z;
+        }
+    for (int x = 0; x < 8; x++) {
+        uint64_t word = 0;
+        block->cell_rank[x] = (uint16_t)cell_count;
+        for (int y = 0; y < 8; y++) {
+            const unsigned any = inside[x][y] | inside[x][y + 1] | inside[x + 1][y] | inside[x + 1][y + 1];
+            const unsigned all = inside[x][y] & inside[x][y + 1] & inside[x + 1][y] & inside[x + 1][y + 1];
+            word |= (uint64_t)((any | any >> 1) & ~(all & all >> 1) & 0xff) << (8 * y);
+        }
+        for (uint64_t left = word; left; left &= left - 1) {
+            const int yz = __builtin_ctzll(left), at[3] = {x, yz >> 3, yz & 7};
+            const int config = config_at(values, at[0], at[1], at[2]);
+            contour_cell *cell = &cells[cell_count++];
+            cell->config = (uint8_t)config;
+            cell->flip = (uint8_t)is_flipped(work, values, config, at);
+            vertex_count += work->table.entry[config][cell->flip].count;
+        }
+        block->cell_mask[x] = word;
+    }
+    free(block->cells);
+    free(block->vertices);
+    block->cells = NULL;
+    block->vertices = NULL;
+    block->vertex_count = vertex_count;
+    if (cell_count == 0) return SWARF_OK;
+    block->cells = malloc(cell_count * sizeof *cells);
+    block->vertices = malloc(vertex_count * sizeof *block->vertices);
+    if (!block->cells || !block->vertices) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for vertices");
+    uint32_t used = 0, next = 0;
+    for (int x = 0; x < 8; x++)
+        for (uint64_t word = block->cell_mask[x]; word; word &= word - 1)
+            place_cell(work, block, values, x * 64 + __builtin_ctzll(word), &cells[next++], &used);
+    memcpy(block->cells, cells, cell_count * sizeof *cells);
+    return SWARF_OK;
+}
+
+/* Corner of a quadrilateral: the vertex of the cell `back` of the edge's voxel. */
+typedef struct corner {
+    uint32_t number;
+    double at[3]; /* in voxels from the edge's voxel */
+    int calm;
+} corner;
+
+static int find_corner(const contour *work, const int32_t voxel[3], int axis, const int back[2], corner *out)
+{
+    int32_t cell[3] = {voxel[0], voxel[1], voxel[2]};
+    cell[(axis + 1) % 3] -= back[0];
+    cell[(axis + 2) % 3] -= back[1];
+    const contour_block *block = swarf_contour_block_at(work, cell);
+    const int x = cell[0] & 7, bit = (cell[1] & 7) * 8 + (cell[2] & 7);
+    if (!block || !(block->cell_mask[x] >> bit & 1)) return 0;
+    const contour_cell *found =
+        block->cells + block->cell_rank[x] + __builtin_popcountll(block->cell_mask[x] & ((UINT64_C(1) << bit) - 1));
+    const contour_case *joined = &work->table.entry[found->config][found->flip];
+    const uint32_t local = found->first + joined->of_edge[axis * 4 + back[0] * 2 + back[1]];
+    out->number = (uint32_t)(block->vertex_first + local);
+    out->calm = (int)(block->calm_mask[x] >> bit & 1);
+    for (int k = 0; k < 3; k++)
+        out->at[k] = ((double)block->vertices[local].xyz[k] - work->layout->origin[k]) / work->layout->voxel - voxel[k];
+    return 1;
+}
+
+static double facing(const double *a, const double *b, const double *c, const double normal[3])
+{
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) {
+        u[k] = b[k] - a[k];
+        v[k] = c[k] - a[k];
+    }
+    const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    return length > 1e-12 ? (n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2]) / length : -1;
+}
+
+/* Whether the two triangles on the diagonal corner[first] - corner[first + 2] meet the edge itself and not only its
+ * line: else they might reach into sheets above or below. */
+static int meets_edge(const corner q[4], int first, int axis)
+{
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    const double *p = q[first].at, *r = q[first + 2].at;
+    const double side = p[b] * r[c] - p[c] * r[b];
+    /* corner k lies in the k-th quadrant round the edge, so that the line is on the side of one of the two others */
+    const double *third = q[(first + 1) % 4].at;
+    const double third_side = (r[b] - p[b]) * (third[c] - p[c]) - (r[c] - p[c]) * (third[b] - p[b]);
+    if (side * third_side < 0) third = q[(first + 3) % 4].at;
+    const double area = (r[b] - p[b]) * (third[c] - p[c]) - (r[c] - p[c]) * (third[b] - p[b]);
+    if (area == 0) return 0;
+    const double w_third = side / area, w_p = (r[b] * third[c] - r[c] * third[b]) / area, w_r = 1 - w_third - w_p;
+    const double height = w_p * p[axis] + w_r * r[axis] + w_third * third[axis];
+    return height >= 0 && height <= 1;
+}
+
+static void put_facet(swarf_facet *facet, const contour_crossing *crossing, int outwards, uint32_t a, uint32_t b,
+                      uint32_t c)
+{
+    facet->v[0] = a;
+    facet->v[1] = outwards ? b : c;
+    facet->v[2] = outwards ? c : b;
+    facet->error_mm = 0;
+    for (int k = 0; k < 3; k++) facet->normal[k] = (int16_t)lrintf(crossing->normal[k] * 32767);
+}
+
+/* Which diagonal cuts the quadrilateral: 0, 1, or -1 for all four triangles round its crossing. */
+static int choose_diagonal(const corner q[4], int axis, int outwards, const contour_crossing *crossing)
+{
+    for (int k = 0; k < 4; k++)
+        if (q[k].calm) return -1;
+    double normal[3], least[2];
+    for (int k = 0; k < 3; k++) normal[k] = outwards ? crossing->normal[k] : -(double)crossing->normal[k];
+    for (int d = 0; d < 2; d++)
+        least[d] = fmin(facing(q[d].at, q[d + 1].at, q[d + 2].at, normal),
+                        facing(q[d].at, q[d + 2].at, q[(d + 3) % 4].at, normal));
+    const int meets[2] = {meets_edge(q, 0, axis), meets_edge(q, 1, axis)};
+    int best = least[1] > least[0] + 1e-3;
+    if (fabs(least[1] - least[0]) <= 1e-3) {
+        double length[2] = {0, 0};
+        for (int d = 0; d < 2; d++)
+            for (int k = 0; k < 3; k++) length[d] += (q[d].at[k] - q[d + 2].at[k]) * (q[d].at[k] - q[d + 2].at[k]);
+        best = length[1] < length[0] * (1 - 1e-6);
+    }
+    if (meets[best]) return best;
+    return meets[!best] ? !best : -1;
+}
+
+swarf_status swarf_contour_join(contour *work, contour_block *block)
+{
+    free(block->facets);
+    free(block->centres);
+    block->facets = NULL;
+    block->centres = NULL;
+    block->facet_count = block->centre_count = 0;
+    if (block->crossing_count == 0) return SWARF_OK;
+    swarf_facet *facets = malloc(4 * (size_t)block->crossing_count * sizeof *facets);
+    contour_vertex *centres = malloc(block->crossing_count * sizeof *centres);
+    block->facets = facets;
+    block->centres = centres;
+    if (!facets || !centres) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for facets");
+    static const int back[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}; /* counter-clockwise seen against the axis */
+    const contour_crossing *crossing = block->crossings;
+    for (int axis = 0; axis < 3; axis++)
+        for (int x = 0; x < 8; x++)
+            for (uint64_t word = block->edge_mask[axis][x]; word; word &= word - 1, crossing++) {
+                const int bit = __builtin_ctzll(word);
+                const int32_t voxel[3] = {block->ijk[0] + x, block->ijk[1] + (bit >> 3), block->ijk[2] + (bit & 7)};
+                const int outwards = swarf_stock_value(work->stock, voxel) < 0;
+                corner q[4];
+                int found = 0;
+                for (int k = 0; k < 4; k++) found += find_corner(work, voxel, axis, back[k], &q[k]);
+                if (found < 4) continue; /* at the border of the layout: the mesh will be found open */
+                const int d = choose_diagonal(q, axis, outwards, crossing);
+                swarf_facet *next = facets + block->facet_count;
+                if (d >= 0) {
+                    put_facet(next, crossing, outwards, q[d].number, q[d + 1].number, q[d + 2].number);
+                    put_facet(next + 1, crossing, outwards, q[d].number, q[d + 2].number, q[(d + 3) % 4].number);
+                    block->facet_count += 2;
+                    continue;
+                }
+                contour_vertex *centre = &centres[block->centre_count];
+                for (int k = 0; k < 3; k++)
+                    centre->xyz[k] = (float)(work->layout->origin[k] +
+                                             (voxel[k] + (k == axis ? (double)crossing->t : 0)) * work->layout->voxel);
+                for (int k = 0; k < 4; k++)
+                    put_facet(next + k, crossing, outwards, q[k].number, q[(k + 1) % 4].number,
+                              SWARF_CENTRE | block->centre_count);
+                block->facet_count += 4;
+                block->centre_count++;
+            }
+    swarf_facet *fitting = realloc(facets, (block->facet_count ? block->facet_count : 1) * sizeof *facets);
+    if (fitting) block->facets = fitting;
+    return SWARF_OK;
+}

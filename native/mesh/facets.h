@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Triangles on their way from the contour to a mesh: corners, true normal, error. */
+#ifndef SWARF_MESH_FACETS_H
+#define SWARF_MESH_FACETS_H
+
+#include "mesh/mesh.h"
+
+typedef struct swarf_facet {
+    uint32_t v[3];
+    float error_mm;    /* bound of the distance to the first triangles here */
+    int16_t normal[3]; /* of the surface where the facet was made, * 32767 */
+} swarf_facet;
+
+/** Vertices and facets of one surface. */
+typedef struct swarf_facets {
+    float *xyz;
+    size_t vertex_count;
+    swarf_facet *facet;
+    size_t facet_count;
+} swarf_facets;
+
+void swarf_facets_free(swarf_facets *facets);
+
+/** Drop vertices that no facet uses. */
+swarf_status swarf_facets_compact(swarf_facets *facets);
+
+/** Remove vertices while the surface stays within error_mm of what came in, keeping edges sharper than 25 degrees,
+ *  corners and topology; stops at `budget` facets (0: none). Vertices whose `locked` byte is set stay (NULL: none).
+ *  The error of what is left is in the facets. */
+swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget,
+                                   const uint8_t *locked, const swarf_progress *progress, double from, double to);
+
+#endif

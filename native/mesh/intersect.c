@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Facets sorted along Morton's curve, LEAF of them to a leaf of a complete binary tree of boxes:
+ *
+ *   level 0: leaves; node i of level l + 1 is over nodes 2 i and 2 i + 1 of level l.
+ *
+ * Every facet looks for later ones whose boxes meet its own, and each such pair is decided in whole numbers. */
+#include "mesh/intersect.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/status.h"
+#include "mesh/predicate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEAF = 4, LEVELS = 32, CHUNK = 4096 };
+
+typedef struct extent {
+    int32_t lo[3], hi[3];
+} extent;
+
+typedef struct found {
+    swarf_facet_pair *pairs;
+    size_t count, room;
+} found;
+
+typedef struct tree {
+    const swarf_facets *facets;
+    double step;
+    uint32_t *order;
+    size_t level_first[LEVELS], level_count[LEVELS];
+    int levels;
+    extent *boxes;
+    found *chunks;
+} tree;
+
+static double step_of(const swarf_facets *facets)
+{
+    float most = 0;
+    for (size_t i = 0; i < 3 * facets->vertex_count; i++) most = fmaxf(most, fabsf(facets->xyz[i]));
+    int exponent;
+    frexp(most > 0 ? (double)most : 1, &exponent);
+    return ldexp(1, exponent - 24);
+}
+
+void swarf_facets_snap(swarf_facets *facets)
+{
+    /* adding and taking away 1.5 * 2^52 steps rounds to whole steps */
+    const double step = step_of(facets), magic = 0x1.8p52 * step;
+    for (size_t i = 0; i < 3 * facets->vertex_count; i++)
+        facets->xyz[i] = (float)((double)facets->xyz[i] + magic - magic);
+}
+
+static void corners_of(const tree *t, uint32_t f, int32_t out[3][3])
+{
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+            out[k][c] = (int32_t)((double)t->facets->xyz[3 * (size_t)t->facets->facet[f].v[k] + (size_t)c] / t->step);
+}
+
+static extent extent_of(int32_t p[3][3])
+{
+    extent e;
+    for (int c = 0; c < 3; c++) {
+        e.lo[c] = e.hi[c] = p[0][c];
+        for (int k = 1; k < 3; k++) {
+            e.lo[c] = p[k][c] < e.lo[c] ? p[k][c] : e.lo[c];
+            e.hi[c] = p[k][c] > e.hi[c] ? p[k][c] : e.hi[c];
+        }
+    }
+    return e;
+}
+
+static int apart(const extent *a, const extent *b)
+{
+    for (int c = 0; c < 3; c++)
+        if (a->hi[c] < b->lo[c] || b->hi[c] < a->lo[c]) return 1;
+    return 0;
+}
+
+/* Every third bit of 21. */
+static uint64_t spread(uint64_t x)
+{
+    x &= 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+}
+
+typedef struct key {
+    uint64_t code;
+    uint32_t facet;
+} key;
+
+/* By 16 bits at a time, stable. */
+static swarf_status sort_keys(key **keys, size_t count)
+{
+    key *from = *keys, *to = malloc((count + 1) * sizeof *to);
+    size_t *begin = malloc(65537 * sizeof *begin);
+    if (!to || !begin) {
+        free(to);
+        free(begin);
+        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
+    }
+    for (int shift = 0; shift < 64; shift += 16) {
+        memset(begin, 0, 65537 * sizeof *begin);
+        for (size_t i = 0; i < count; i++) begin[(from[i].code >> shift & 0xffff) + 1]++;
+        for (size_t i = 0; i < 65536; i++) begin[i + 1] += begin[i];
+        for (size_t i = 0; i < count; i++) to[begin[from[i].code >> shift & 0xffff]++] = from[i];
+        key *kept = from;
+        from = to;
+        to = kept;
+    }
+    free(begin);
+    free(to);
+    *keys = from;
+    return SWARF_OK;
+}
+
+static swarf_status sort_facets(tree *t)
+{
+    const size_t count = t->facets->facet_count;
+    key *keys = malloc((count + 1) * sizeof *keys);
+    t->order = malloc((count + 1) * sizeof *t->order);
+    if (!keys || !t->order) {
+        free(keys);
+        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
+    }
+    for (size_t f = 0; f < count; f++) {
+        int32_t p[3][3];
+        corners_of(t, (uint32_t)f, p);
+        const extent e = extent_of(p);
+        keys[f].code = 0;
+        for (int c = 0; c < 3; c++) /* coordinates lie in -2^24 .. 2^24 */
+            keys[f].code |= spread((uint64_t)(((int64_t)e.lo[c] + e.hi[c]) / 2 + (1 << 24)) >> 4) << c;
+        keys[f].facet = (uint32_t)f;
+    }
+    const swarf_status status = sort_keys(&keys, count);
+    for (size_t f = 0; f < count; f++) t->order[f] = keys[f].facet;
+    free(keys);
+    return status;
+}
+
+static void widen(extent *to, const extent *by)
+{
+    for (int c = 0; c < 3; c++) {
+        to->lo[c] = by->lo[c] < to->lo[c] ? by->lo[c] : to->lo[c];
+        to->hi[c] = by->hi[c] > to->hi[c] ? by->hi[c] : to->hi[c];
+    }
+}
+
+static swarf_status build(tree *t)
+{
+    const size_t count = t->facets->facet_count;
+    size_t total = 0;
+    for (size_t nodes = (count + LEAF - 1) / LEAF;; nodes = (nodes + 1) / 2) {
+        t->level_first[t->levels] = total;
+        t->level_count[t->levels++] = nodes;
+        total += nodes;
+        if (nodes <= 1) break;
+    }
+    t->boxes = malloc((total + 1) * sizeof *t->boxes);
+    if (!t->boxes) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
+    for (size_t i = 0; i < count; i++) {
+        int32_t p[3][3];
+        corners_of(t, t->order[i], p);
+        const extent e = extent_of(p);
+        if (i % LEAF == 0)
+            t->boxes[i / LEAF] = e;
+        else
+            widen(&t->boxes[i / LEAF], &e);
+    }
+    for (int level = 1; level < t->levels; level++)
+        for (size_t i = 0; i < t->level_count[level]; i++) {
+            const size_t child = t->level_first[level - 1] + 2 * i;
+            extent *box = &t->boxes[t->level_first[level] + i];
+            *box = t->boxes[child];
+            if (2 * i + 1 < t->level_count[level - 1]) widen(box, &t->boxes[child + 1]);
+        }
+    return SWARF_OK;
+}
+
+static swarf_status look_at_leaf(const tree *t, size_t own, int32_t p[3][3], const extent *box, size_t leaf, found *out)
+{
+    const uint32_t f = t->order[own];
+    for (size_t i = leaf * LEAF; i < (leaf + 1) * LEAF && i < t->facets->facet_count; i++) {
+        if (i <= own) continue;
+        int32_t q[3][3];
+        const uint32_t g = t->order[i];
+        corners_of(t, g, q);
+        const extent other = extent_of(q);
+        if (apart(box, &other) || !swarf_triangles_meet(p, t->facets->facet[f].v, q, t->facets->facet[g].v)) continue;
+        SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
+        out->pairs[out->count++] = (swarf_facet_pair){f, g};
+    }
+    return SWARF_OK;
+}
+
+static swarf_status look_for(const tree *t, size_t own, found *out)
+{
+    int32_t p[3][3];
+    corners_of(t, t->order[own], p);
+    const extent box = extent_of(p);
+    struct {
+        size_t node;
+        int level;
+    } stack[2 * LEVELS];
+    int depth = 0;
+    stack[depth].node = 0;
+    stack[depth++].level = t->levels - 1;
+    while (depth) {
+        depth--;
+        const int level = stack[depth].level;
+        const size_t node = stack[depth].node;
+        if (((node + 1) << level) * LEAF <= own + 1 || apart(&box, &t->boxes[t->level_first[level] + node])) continue;
+        if (level == 0) {
+            SWARF_TRY(look_at_leaf(t, own, p, &box, node, out));
+            continue;
+        }
+        for (size_t child = 2 * node + 2; child-- > 2 * node;)
+            if (child < t->level_count[level - 1]) {
+                stack[depth].node = child;
+                stack[depth++].level = level - 1;
+            }
+    }
+    return SWARF_OK;
+}
+
+static swarf_status look_chunk(void *context, size_t index)
+{
+    const tree *t = context;
+    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < t->facets->facet_count; i++)
+        SWARF_TRY(look_for(t, i, &t->chunks[index]));
+    return SWARF_OK;
+}
+
+static swarf_status look_everywhere(tree *t, const swarf_progress *progress, double from, double to,
+                                    swarf_facet_pair **pairs, size_t *count)
+{
+    const size_t chunks = (t->facets->facet_count + CHUNK - 1) / CHUNK;
+    t->chunks = calloc(chunks, sizeof *t->chunks);
+    if (!t->chunks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    swarf_status status = swarf_parallel_for(chunks, look_chunk, t, progress, from, to);
+    size_t total = 0, used = 0;
+    for (size_t i = 0; i < chunks; i++) total += t->chunks[i].count;
+    swarf_facet_pair *all = malloc((total + 1) * sizeof *all);
+    if (status == SWARF_OK && !all) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    for (size_t i = 0; i < chunks; i++) {
+        if (status == SWARF_OK && t->chunks[i].count)
+            memcpy(all + used, t->chunks[i].pairs, t->chunks[i].count * sizeof *all);
+        used += t->chunks[i].count;
+        free(t->chunks[i].pairs);
+    }
+    if (status != SWARF_OK) {
+        free(all);
+        return status;
+    }
+    *pairs = all;
+    *count = total;
+    return SWARF_OK;
+}
+
+swarf_status swarf_facets_intersect(const swarf_facets *facets, const swarf_progress *progress, double from, double to,
+                                    swarf_facet_pair **pairs, size_t *count)
+{
+    if (facets->facet_count == 0) {
+        *pairs = NULL;
+        *count = 0;
+        return SWARF_OK;
+    }
+    tree t = {.facets = facets, .step = step_of(facets)};
+    swarf_status status = sort_facets(&t);
+    if (status == SWARF_OK) status = build(&t);
+    if (status == SWARF_OK) status = look_everywhere(&t, progress, from, to, pairs, count);
+    free(t.order);
+    free(t.boxes);
+    free(t.chunks);
+    return status;
+}

@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Simplifying a whole surface: cut into cubes, each simplified by one thread with the vertices at its border fixed,
+ * then once more with cubes that are shifted or larger, so that no border stays. Which cube is done when does not
+ * matter, so the result is the same for any number of threads. */
+#include "mesh/simplify.h"
+
+#include "base/parallel.h"
+#include "base/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Edge of the cubes in voxels, pass by pass. The first are small, to stay in cache while there are many facets. */
+static const struct pass {
+    double edge, shift;
+} passes[] = {{32, 0}, {32, 0.5}, {96, 0.25}, {256, 0.4}};
+enum { PASSES = sizeof passes / sizeof *passes };
+/* Cubes that a table is made for; more are made larger. */
+static const double most_cubes = 1 << 22;
+/* With a budget the error grows by this factor until the budget is met: the mesh ends within it of the least error. */
+static const double error_step = 2;
+enum { ERROR_STEPS = 8 };
+
+typedef struct job {
+    swarf_facets *facets;
+    const uint8_t *locked;
+    double lo[3], edge, limit;
+    size_t count[3];
+    int first;           /* pass at this limit */
+    uint32_t *cube;      /* of every vertex */
+    uint32_t *local;     /* of every vertex, the number in its cube */
+    uint8_t *settled;    /* vertices that cannot go at this limit unless something near them does */
+    size_t *owned_begin; /* cubes + 1 */
+    size_t *shared_begin;
+    uint32_t *owned;  /* facets by cube */
+    uint32_t *shared; /* facets that reach out of a cube */
+    size_t *gone;     /* by cube */
+} job;
+
+static uint32_t find_cube(const job *j, size_t vertex)
+{
+    const float *p = j->facets->xyz + 3 * vertex;
+    size_t at[3];
+    for (int k = 0; k < 3; k++) {
+        const double cell = ((double)p[k] - j->lo[k]) / j->edge;
+        at[k] = cell < 0 ? 0 : (size_t)cell;
+        if (at[k] >= j->count[k]) at[k] = j->count[k] - 1;
+    }
+    return (uint32_t)((at[0] * j->count[1] + at[1]) * j->count[2] + at[2]);
+}
+
+enum { CHUNK = 65536 };
+
+static swarf_status find_cubes(void *context, size_t index)
+{
+    job *j = context;
+    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < j->facets->vertex_count; i++)
+        j->cube[i] = find_cube(j, i);
+    return SWARF_OK;
+}
+
+/* Facets by cube, counted and then put; a facet over several cubes is shared by each of them. */
+static void sort_facets(job *j, int put)
+{
+    for (size_t f = 0; f < j->facets->facet_count; f++) {
+        const uint32_t *v = j->facets->facet[f].v;
+        const size_t c[3] = {j->cube[v[0]], j->cube[v[1]], j->cube[v[2]]};
+        if (c[0] == c[1] && c[1] == c[2]) {
+            if (put)
+                j->owned[j->owned_begin[c[0]]++] = (uint32_t)f;
+            else
+                j->owned_begin[c[0]]++;
+            continue;
+        }
+        for (int k = 0; k < 3; k++) {
+            if ((k > 0 && c[k] == c[0]) || (k > 1 && c[k] == c[1])) continue;
+            if (put)
+                j->shared[j->shared_begin[c[k]]++] = (uint32_t)f;
+            else
+                j->shared_begin[c[k]]++;
+        }
+    }
+}
+
+static size_t sum_up(size_t *begin, size_t count)
+{
+    size_t sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        const size_t own = begin[i];
+        begin[i] = sum;
+        sum += own;
+    }
+    return sum;
+}
+
+static void free_region(simplify_region *r)
+{
+    free(r->xyz);
+    free(r->global);
+    free(r->head);
+    free(r->state);
+    free(r->mark);
+    free(r->v);
+    free(r->of);
+    free(r->next);
+    free(r->alive);
+}
+
+static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, int shared)
+{
+    const size_t f = r->facet_count++;
+    swarf_facet *facet = &j->facets->facet[number];
+    r->of[f] = facet;
+    r->alive[f] = 1;
+    for (size_t k = 0; k < 3; k++) {
+        const uint32_t vertex = facet->v[k];
+        r->v[3 * f + k] = SWARF_NO_VERTEX;
+        if (shared && j->cube[vertex] != cube) continue;
+        uint32_t own = j->local[vertex];
+        if (own >= r->vertex_count || r->global[own] != vertex) { /* seen for the first time */
+            own = j->local[vertex] = (uint32_t)r->vertex_count++;
+            r->global[own] = vertex;
+            r->head[own] = SWARF_NO_VERTEX;
+            r->mark[own] = 0;
+            r->state[own] = j->locked && j->locked[vertex] ? SIMPLIFY_FIXED : j->settled[vertex] ? 0 : SIMPLIFY_DIRTY;
+            for (int c = 0; c < 3; c++)
+                r->xyz[3 * (size_t)own + (size_t)c] = j->facets->xyz[3 * (size_t)vertex + (size_t)c];
+        }
+        if (shared) r->state[own] |= SIMPLIFY_FIXED;
+        r->v[3 * f + k] = own;
+        r->next[3 * f + k] = r->head[own];
+        r->head[own] = (uint32_t)(3 * f + k);
+    }
+}
+
+static swarf_status simplify_cube(void *context, size_t cube)
+{
+    job *j = context;
+    const size_t owned_first = cube ? j->owned_begin[cube - 1] : 0, owned = j->owned_begin[cube] - owned_first;
+    const size_t shared_first = cube ? j->shared_begin[cube - 1] : 0, shared = j->shared_begin[cube] - shared_first;
+    j->gone[cube] = 0;
+    if (owned < 4) return SWARF_OK; /* nothing to remove */
+    const size_t facets = owned + shared, vertices = 3 * facets;
+    simplify_region r = {0};
+    r.xyz = malloc(3 * vertices * sizeof *r.xyz);
+    r.global = malloc(vertices * sizeof *r.global);
+    r.head = malloc(vertices * sizeof *r.head);
+    r.state = malloc(vertices);
+    r.mark = malloc(vertices * sizeof *r.mark);
+    r.v = malloc(vertices * sizeof *r.v);
+    r.of = malloc(facets * sizeof *r.of);
+    r.next = malloc(vertices * sizeof *r.next);
+    r.alive = malloc(facets);
+    swarf_status status = SWARF_OK;
+    if (!r.xyz || !r.global || !r.head || !r.state || !r.mark || !r.v || !r.of || !r.next || !r.alive) {
+        status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    } else {
+        for (size_t i = 0; i < owned; i++) add_facet(j, &r, cube, j->owned[owned_first + i], 0);
+        r.owned_count = owned;
+        for (size_t i = 0; i < shared; i++) add_facet(j, &r, cube, j->shared[shared_first + i], 1);
+        j->gone[cube] = swarf_simplify_region(&r, j->limit, j->first);
+        for (size_t i = 0; i < r.vertex_count; i++) j->settled[r.global[i]] = r.state[i] == 0;
+    }
+    free_region(&r);
+    return status;
+}
+
+static void drop_gone(swarf_facets *facets)
+{
+    size_t kept = 0;
+    for (size_t f = 0; f < facets->facet_count; f++)
+        if (facets->facet[f].v[0] != SWARF_NO_VERTEX) facets->facet[kept++] = facets->facet[f];
+    facets->facet_count = kept;
+}
+
+static void lay_out(job *j, const struct pass *pass, double voxel)
+{
+    double hi[3];
+    for (int k = 0; k < 3; k++) {
+        j->lo[k] = INFINITY;
+        hi[k] = -INFINITY;
+    }
+    for (size_t i = 0; i < j->facets->vertex_count; i++)
+        for (int k = 0; k < 3; k++) {
+            j->lo[k] = fmin(j->lo[k], (double)j->facets->xyz[3 * i + (size_t)k]);
+            hi[k] = fmax(hi[k], (double)j->facets->xyz[3 * i + (size_t)k]);
+        }
+    j->edge = pass->edge * voxel;
+    for (double cubes = INFINITY; cubes > most_cubes; j->edge *= 1.5) {
+        cubes = 1;
+        for (int k = 0; k < 3; k++) {
+            j->count[k] = (size_t)fmin((hi[k] - j->lo[k]) / j->edge + pass->shift + 1, 1e6);
+            cubes *= (double)j->count[k];
+        }
+        if (cubes <= most_cubes) break;
+    }
+    for (int k = 0; k < 3; k++) j->lo[k] -= pass->shift * j->edge;
+}
+
+static swarf_status run_pass(job *j, const struct pass *pass, double voxel, const swarf_progress *progress, double from,
+                             double to, size_t *gone)
+{
+    lay_out(j, pass, voxel);
+    const size_t cubes = j->count[0] * j->count[1] * j->count[2];
+    j->owned_begin = calloc(cubes, sizeof *j->owned_begin);
+    j->shared_begin = calloc(cubes, sizeof *j->shared_begin);
+    j->gone = calloc(cubes, sizeof *j->gone);
+    if (!j->owned_begin || !j->shared_begin || !j->gone)
+        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    SWARF_TRY(swarf_parallel_for((j->facets->vertex_count + CHUNK - 1) / CHUNK, find_cubes, j, NULL, 0, 1));
+    sort_facets(j, 0);
+    const size_t owned = sum_up(j->owned_begin, cubes), shared = sum_up(j->shared_begin, cubes);
+    j->owned = malloc((owned + 1) * sizeof *j->owned);
+    j->shared = malloc((shared + 1) * sizeof *j->shared);
+    if (!j->owned || !j->shared) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    sort_facets(j, 1); /* the begins become the ends */
+    SWARF_TRY(swarf_parallel_for(cubes, simplify_cube, j, progress, from, to));
+    *gone = 0;
+    for (size_t i = 0; i < cubes; i++) *gone += j->gone[i];
+    drop_gone(j->facets);
+    return SWARF_OK;
+}
+
+static void free_pass(job *j)
+{
+    free(j->owned_begin);
+    free(j->shared_begin);
+    free(j->owned);
+    free(j->shared);
+    free(j->gone);
+    j->owned_begin = j->shared_begin = j->gone = NULL;
+    j->owned = j->shared = NULL;
+}
+
+swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget,
+                                   const uint8_t *locked, const swarf_progress *progress, double from, double to)
+{
+    if (!(error_mm > 0) || facets->facet_count == 0 || (budget && facets->facet_count <= budget)) return SWARF_OK;
+    job j = {.facets = facets, .locked = locked};
+    j.cube = malloc(facets->vertex_count * sizeof *j.cube);
+    j.local = calloc(facets->vertex_count, sizeof *j.local);
+    j.settled = malloc(facets->vertex_count);
+    swarf_status status = SWARF_OK;
+    if (!j.cube || !j.local || !j.settled)
+        status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    const int steps = budget ? ERROR_STEPS : 1;
+    double at = from;
+    const double part = (to - from) / (steps * PASSES);
+    for (int step = 0; step < steps && status == SWARF_OK; step++) {
+        j.limit = error_mm * pow(error_step, step - (steps - 1));
+        for (int pass = 0; pass < PASSES && status == SWARF_OK; pass++, at += part) {
+            size_t gone = 0;
+            j.first = pass == 0;
+            if (j.first) memset(j.settled, 0, facets->vertex_count);
+            status = run_pass(&j, &passes[pass], voxel, progress, at, at + part, &gone);
+            free_pass(&j);
+            if (budget && facets->facet_count <= budget) break;
+        }
+        if (budget && facets->facet_count <= budget) break;
+    }
+    free(j.cube);
+    free(j.local);
+    free(j.settled);
+    return status == SWARF_OK ? swarf_facets_compact(facets) : status;
+}
+
+void swarf_facets_free(swarf_facets *facets)
+{
+    free(facets->xyz);
+    free(facets->facet);
+    memset(facets, 0, sizeof *facets);
+}
+
+swarf_status swarf_facets_compact(swarf_facets *facets)
+{
+    uint32_t *number = malloc((facets->vertex_count + 1) * sizeof *number);
+    if (!number) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    memset(number, 0xff, facets->vertex_count * sizeof *number);
+    for (size_t f = 0; f < facets->facet_count; f++)
+        for (int k = 0; k < 3; k++) number[facets->facet[f].v[k]] = 0;
+    size_t kept = 0;
+    for (size_t i = 0; i < facets->vertex_count; i++) {
+        if (number[i] == SWARF_NO_VERTEX) continue;
+        memmove(facets->xyz + 3 * kept, facets->xyz + 3 * i, 3 * sizeof *facets->xyz);
+        number[i] = (uint32_t)kept++;
+    }
+    facets->vertex_count = kept;
+    for (size_t f = 0; f < facets->facet_count; f++)
+        for (int k = 0; k < 3; k++) facets->facet[f].v[k] = number[facets->facet[f].v[k]];
+    free(number);
+    return SWARF_OK;
+}

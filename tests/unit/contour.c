@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Dual contouring: boxes with sharp edges, the same bits for any number of threads, errors that are kept, budgets, and
+ * stocks of which little or nothing is left. */
+#include <math.h>
+#include <string.h>
+
+#include "test.h"
+
+static swarf_stock *make_box(const double lo[3], const double hi[3], double voxel)
+{
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = voxel;
+    const swarf_box box = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+    swarf_stock *stock = NULL;
+    CHECK_OK(swarf_stock_create_box(&box, &options, &stock));
+    return stock;
+}
+
+static int is_manifold(const swarf_mesh *mesh)
+{
+    const swarf_topology topology = swarf_mesh_topology(mesh);
+    return topology.closed && !topology.boundary_edges && !topology.nonmanifold_edges && !topology.misoriented_edges &&
+           !topology.degenerate;
+}
+
+/* Distance to the surface of the box 0 0 0 .. 6 5 4. */
+static double off_box(const float *p)
+{
+    const double size[3] = {6, 5, 4};
+    double inside = INFINITY, outside = 0;
+    for (int k = 0; k < 3; k++) {
+        const double away = fmax(-(double)p[k], (double)p[k] - size[k]);
+        inside = fmin(inside, fabs(away));
+        outside = fmax(outside, away);
+    }
+    return fmax(inside, outside);
+}
+
+static void check_box(void)
+{
+    const double lo[3] = {0, 0, 0}, hi[3] = {6, 5, 4};
+    swarf_stock *stock = make_box(lo, hi, 0.1);
+    swarf_contour_options options = swarf_contour_options_default();
+    swarf_contour_report report;
+    swarf_mesh *mesh = NULL;
+    if (CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) {
+        CHECK(is_manifold(mesh));
+        CHECK(report.triangles == report.full_triangles && report.error_mm == 0 && report.intersections_left == 0);
+        const swarf_triangles t = swarf_mesh_triangles(mesh);
+        double worst = 0;
+        for (size_t i = 0; i < t.vertex_count; i++) worst = fmax(worst, off_box(t.xyz + 3 * i));
+        CHECK(worst < 0.05); /* at edges the field tells no more */
+        CHECK(report.sharp_vertices > 500);
+        swarf_mesh_release(mesh);
+    }
+    options.error_mm = 0.01;
+    if (CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) {
+        CHECK(is_manifold(mesh));
+        CHECK(report.triangles == swarf_mesh_triangles(mesh).triangle_count);
+        CHECK(report.triangles * 50 < report.full_triangles);
+        CHECK(report.error_mm <= 0.01 * (1 + 1e-6));
+        CHECK_NEAR(swarf_mesh_topology(mesh).volume_mm3, 120, 0.1);
+        swarf_mesh_release(mesh);
+    }
+    swarf_stock_destroy(stock);
+}
+
+static void check_cylinder(void)
+{
+    const double base[3] = {0.03, 0.02, 0.01}, axis[3] = {6, 5, 4};
+    swarf_stock_options stock_options = swarf_stock_options_default();
+    stock_options.voxel_mm = 0.1;
+    swarf_stock *stock = NULL;
+    if (!CHECK_OK(swarf_stock_create_cylinder(base, axis, 3, &stock_options, &stock))) return;
+    swarf_contour_options options = swarf_contour_options_default();
+    swarf_contour_report report;
+    const double exact = 3.14159265358979323846 * 9 * sqrt(77);
+    swarf_mesh *first = NULL;
+    for (int threads = 1; threads <= 8; threads += threads < 3 ? 1 : 5) {
+        CHECK_OK(swarf_threads_set(threads));
+        options.error_mm = 0.005;
+        swarf_mesh *mesh = NULL;
+        if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) continue;
+        CHECK(is_manifold(mesh));
+        CHECK_NEAR(swarf_mesh_topology(mesh).volume_mm3, exact, 2e-3 * exact);
+        CHECK(report.triangles * 3 < report.full_triangles);
+        if (!first) {
+            first = mesh;
+            continue;
+        }
+        const swarf_triangles a = swarf_mesh_triangles(first), b = swarf_mesh_triangles(mesh);
+        CHECK(a.vertex_count == b.vertex_count && memcmp(a.xyz, b.xyz, a.vertex_count * 12) == 0);
+        CHECK(a.triangle_count == b.triangle_count && memcmp(a.index, b.index, a.triangle_count * 12) == 0);
+        swarf_mesh_release(mesh);
+    }
+    CHECK_OK(swarf_threads_set(0));
+
+    /* the budget is met by as little error as it takes, or said not to be */
+    const size_t at_limit = swarf_mesh_triangles(first).triangle_count;
+    swarf_mesh_release(first);
+    swarf_mesh *mesh = NULL;
+    options.error_mm = 0.02;
+    options.triangle_budget = at_limit;
+    if (CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) {
+        CHECK(report.budget_met && report.triangles <= at_limit && is_manifold(mesh));
+        CHECK(report.error_mm < 0.02);
+        swarf_mesh_release(mesh);
+    }
+    options.triangle_budget = 10;
+    if (CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) {
+        CHECK(!report.budget_met && report.triangles > 10 && is_manifold(mesh));
+        swarf_mesh_release(mesh);
+    }
+    swarf_stock_destroy(stock);
+}
+
+static int stop(void *user, double fraction)
+{
+    (void)fraction;
+    return ++*(int *)user >= 3;
+}
+
+static void check_refusals(void)
+{
+    const double lo[3] = {0, 0, 0}, hi[3] = {2, 2, 2};
+    swarf_stock *stock = make_box(lo, hi, 0.1);
+    swarf_contour_options options = swarf_contour_options_default();
+    swarf_mesh *mesh = NULL;
+    options.error_mm = -1;
+    CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, "error -1 mm");
+    options.error_mm = NAN;
+    CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, "error");
+    options.error_mm = 0;
+    options.triangle_budget = 5;
+    CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, "budget of 5");
+    options.triangle_budget = 0;
+    options.size = 3;
+    CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, "another version");
+    options = swarf_contour_options_default();
+    CHECK_FAILS(swarf_mesh_contour(NULL, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, NULL);
+    CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, NULL, NULL), SWARF_ERROR_ARGUMENT, NULL);
+    int calls = 0;
+    const swarf_progress progress = {stop, &calls};
+    CHECK_FAILS(swarf_mesh_contour(stock, &options, &progress, &mesh, NULL), SWARF_ERROR_CANCELLED, NULL);
+    CHECK(mesh == NULL);
+
+    CHECK_OK(swarf_stock_boolean(stock, stock, SWARF_DIFFERENCE)); /* everything cut away */
+    options.error_mm = 0.1;
+    swarf_contour_report report;
+    if (CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) {
+        CHECK(swarf_mesh_triangles(mesh).triangle_count == 0 && report.triangles == 0);
+        swarf_mesh_release(mesh);
+    }
+    swarf_stock_destroy(stock);
+}
+
+/* One voxel, and shells thinner than one. */
+static void check_small(void)
+{
+    static const double sizes[][3] = {{0.1, 0.1, 0.1}, {0.06, 0.06, 0.06}, {3, 3, 0.04}, {3, 0.12, 0.12}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        const double lo[3] = {0.05, 0.05, 0.05},
+                     hi[3] = {lo[0] + sizes[i][0], lo[1] + sizes[i][1], lo[2] + sizes[i][2]};
+        swarf_stock *stock = make_box(lo, hi, 0.1);
+        swarf_contour_options options = swarf_contour_options_default();
+        for (int simple = 0; simple < 2; simple++) {
+            swarf_contour_report report;
+            swarf_mesh *mesh = NULL;
+            options.error_mm = simple ? 0.01 : 0;
+            if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) continue;
+            CHECK(swarf_mesh_triangles(mesh).triangle_count == 0 || is_manifold(mesh));
+            CHECK(report.intersections_left == 0);
+            swarf_mesh_release(mesh);
+        }
+        swarf_stock_destroy(stock);
+    }
+}
+
+int main(void)
+{
+    check_box();
+    check_cylinder();
+    check_refusals();
+    check_small();
+    return test_end();
+}
