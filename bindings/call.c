@@ -46,3 +46,17 @@ int call_end(native_call *call, module_state *state, swarf_status status)
     error_raise(state, status);
     return -1;
 }
+
+PyObject *call_write(module_state *state, void *context, PyObject *path, PyObject *progress,
+                     swarf_status (*write)(void *context, const char *path, const swarf_progress *progress))
+{
+    native_call call;
+    int failed = call_begin(&call, progress);
+    if (!failed) {
+        const swarf_status status = write(context, PyBytes_AsString(path), &call.progress);
+        failed = call_end(&call, state, status);
+    }
+    Py_DECREF(path);
+    if (failed) return NULL;
+    Py_RETURN_NONE;
+}

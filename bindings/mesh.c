@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* swarf.Mesh and compare_volume(): triangles, immutable, any thread. */
+/* swarf.Mesh and compare_volume(): triangles, immutable, any thread. Their measures are in measures.c. */
 #include "native.h"
 
 static swarf_mesh *handle_of(PyObject *self)
@@ -7,7 +7,7 @@ static swarf_mesh *handle_of(PyObject *self)
     return ((mesh_object *)self)->handle;
 }
 
-static PyObject *mesh_wrap(PyTypeObject *type, swarf_mesh *handle)
+PyObject *mesh_wrap(PyTypeObject *type, swarf_mesh *handle)
 {
     mesh_object *self = (mesh_object *)PyType_GenericAlloc(type, 0);
     if (!self) {
@@ -15,6 +15,7 @@ static PyObject *mesh_wrap(PyTypeObject *type, swarf_mesh *handle)
         return NULL;
     }
     self->handle = handle;
+    self->from_stock = 0;
     return (PyObject *)self;
 }
 
@@ -83,35 +84,84 @@ static PyObject *mesh_read(PyObject *type, PyObject *args, PyObject *keywords)
 
 static PyObject *mesh_from_stock(PyObject *type, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"stock", "adaptivity", "progress", NULL};
+    static char *names[] = {"stock", "error", "budget", "progress", NULL};
     PyObject *stock, *progress = NULL;
-    double adaptivity = 0;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$O:from_stock", names,
-                                     state_of_type((PyTypeObject *)type)->stock, &stock, &adaptivity, &progress))
+    double error = 0;
+    Py_ssize_t budget = 0;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$nO:from_stock", names,
+                                     state_of_type((PyTypeObject *)type)->stock, &stock, &error, &budget, &progress))
         return NULL;
+    if (budget < 0) return PyErr_Format(PyExc_ValueError, "budget: %zd is not a number of triangles", budget);
     native_call call;
     if (call_begin(&call, progress)) return NULL;
+    swarf_contour_options options = swarf_contour_options_default();
+    options.error_mm = error;
+    options.triangle_budget = (size_t)budget;
+    swarf_contour_report report;
     swarf_mesh *handle = NULL;
     const swarf_status status =
-        swarf_mesh_create_stock(((stock_object *)stock)->handle, adaptivity, &call.progress, &handle);
-    return mesh_finish(type, &call, status, handle);
+        swarf_mesh_contour(((stock_object *)stock)->handle, &options, &call.progress, &handle, &report);
+    PyObject *result = mesh_finish(type, &call, status, handle);
+    if (result) {
+        ((mesh_object *)result)->contour = report;
+        ((mesh_object *)result)->from_stock = 1;
+    }
+    return result;
+}
+
+typedef struct writing {
+    const swarf_mesh *mesh;
+    const uint8_t *rgb;
+    size_t count;
+} writing;
+
+static swarf_status write_to(void *context, const char *path, const swarf_progress *progress)
+{
+    const writing *w = context;
+    return swarf_mesh_write_colored(w->mesh, w->rgb, w->count, path, progress);
+}
+
+/** A table of colours as bytes; *out is freed with PyMem_Free(). */
+static int read_colors(PyObject *object, uint8_t **out, size_t *count)
+{
+    uint32_t *values;
+    *out = NULL;
+    *count = 0;
+    if (!object || object == Py_None) return 0;
+    if (buffer_indices(object, "colors", 3, &values, count)) return -1;
+    uint8_t *rgb = PyMem_Malloc(3 * *count + 1);
+    for (size_t i = 0; rgb && i < 3 * *count; i++) {
+        if (values[i] > 255) {
+            PyErr_Format(PyExc_ValueError, "colors: row %zu: %u is not in 0 .. 255", i / 3, (unsigned)values[i]);
+            PyMem_Free(rgb);
+            PyMem_Free(values);
+            return -1;
+        }
+        rgb[i] = (uint8_t)values[i];
+    }
+    PyMem_Free(values);
+    *out = rgb;
+    if (!rgb) PyErr_NoMemory();
+    return rgb ? 0 : -1;
 }
 
 static PyObject *mesh_write(PyObject *self, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"path", "progress", NULL};
-    PyObject *path, *progress = NULL;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O&|$O:write", names, PyUnicode_FSConverter, &path, &progress))
+    static char *names[] = {"path", "colors", "progress", NULL};
+    PyObject *path, *colors = NULL, *progress = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O&|$OO:write", names, PyUnicode_FSConverter, &path, &colors,
+                                     &progress))
         return NULL;
-    native_call call;
-    int failed = call_begin(&call, progress);
-    if (!failed) {
-        const swarf_status status = swarf_mesh_write(handle_of(self), PyBytes_AsString(path), &call.progress);
-        failed = call_end(&call, state_of(self), status);
+    writing w = {.mesh = handle_of(self)};
+    uint8_t *rgb;
+    if (read_colors(colors, &rgb, &w.count)) {
+        Py_DECREF(path);
+        return NULL;
     }
-    Py_DECREF(path);
-    if (failed) return NULL;
-    Py_RETURN_NONE;
+    w.rgb = rgb;
+    PyObject *result = call_write(state_of(self), &w, path, progress, write_to);
+    PyMem_Free(rgb);
+    return result;
 }
 
 /* ---- properties: measured once, when the mesh was made ---- */
@@ -178,11 +228,20 @@ static PyMethodDef mesh_methods[] = {
     {"read", WITH_KEYWORDS(mesh_read), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
      "read($type, path)\n--\n\nMesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."},
     {"from_stock", WITH_KEYWORDS(mesh_from_stock), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "from_stock($type, stock, adaptivity=0.0, *, progress=None)\n--\n\n"
-     "The surface of a stock, closed and oriented outwards; adaptivity 0 (uniform) .. 1."},
+     "from_stock($type, stock, error=0.0, *, budget=0, progress=None)\n--\n\n"
+     "The surface of a stock with its edges: closed, oriented outwards, no triangles that cut each other. Vertices "
+     "are\n"
+     "left out while the mesh stays within ``error`` mm of the full one, until at most ``budget`` triangles are left\n"
+     "(0: as few as the error allows). What it came to is in ``contour``."},
     {"write", WITH_KEYWORDS(mesh_write), METH_VARARGS | METH_KEYWORDS,
-     "write($self, path, *, progress=None)\n--\n\n"
-     "Write .stl or .ply (binary) or .obj, by the suffix; beside the target and renamed, so a failure loses nothing."},
+     "write($self, path, *, colors=None, progress=None)\n--\n\n"
+     "Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure "
+     "loses\n"
+     "nothing. ``colors`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."},
+    {"measure", mesh_measure, METH_NOARGS, mesh_measure_doc},
+    {"shells", mesh_shells, METH_NOARGS, mesh_shells_doc},
+    {"keep_shells", mesh_keep_shells, METH_O, mesh_keep_shells_doc},
+    {"section", WITH_KEYWORDS(mesh_section), METH_VARARGS | METH_KEYWORDS, mesh_section_doc},
     {NULL, NULL, 0, NULL},
 };
 
@@ -199,6 +258,7 @@ static PyGetSetDef mesh_getset[] = {
     {"nonmanifold_edges", mesh_edges, NULL, "Edges of more than two triangles.", FIELD(nonmanifold_edges)},
     {"misoriented_edges", mesh_edges, NULL, "Edges that two triangles use in one direction.", FIELD(misoriented_edges)},
     {"degenerate", mesh_edges, NULL, "Triangles with a repeated vertex.", FIELD(degenerate)},
+    {"contour", mesh_contour, NULL, "Contour: what Mesh.from_stock() came to; None for other meshes.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 

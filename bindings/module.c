@@ -109,7 +109,9 @@ static int module_exec(PyObject *module)
                    add_sequence(module, &comparison_desc, &state->comparison) ||
                    add_sequence(module, &cluster_desc, &state->cluster) ||
                    add_type(module, &solid_spec, &state->solid, 0) ||
-                   add_type(module, &deviation_spec, &state->deviation, 0)
+                   add_type(module, &deviation_spec, &state->deviation, 0) ||
+                   add_sequence(module, &shell_desc, &state->shell) ||
+                   add_sequence(module, &contour_desc, &state->contour)
                ? -1
                : 0;
 }
@@ -132,6 +134,8 @@ static int module_traverse(PyObject *module, visitproc visit, void *arg)
     Py_VISIT(state->cluster);
     Py_VISIT(state->solid);
     Py_VISIT(state->deviation);
+    Py_VISIT(state->shell);
+    Py_VISIT(state->contour);
     Py_VISIT(state->error);
     Py_VISIT(state->format_error);
     Py_VISIT(state->geometry_error);
@@ -158,6 +162,8 @@ static int module_clear(PyObject *module)
     Py_CLEAR(state->cluster);
     Py_CLEAR(state->solid);
     Py_CLEAR(state->deviation);
+    Py_CLEAR(state->shell);
+    Py_CLEAR(state->contour);
     Py_CLEAR(state->error);
     Py_CLEAR(state->format_error);
     Py_CLEAR(state->geometry_error);

@@ -33,6 +33,8 @@ typedef struct module_state {
     PyTypeObject *cluster;
     PyTypeObject *solid;
     PyTypeObject *deviation;
+    PyTypeObject *shell;
+    PyTypeObject *contour;
     PyTypeObject *pick;
     PyObject *error; /* exceptions, see error.c */
     PyObject *format_error;
@@ -76,6 +78,10 @@ typedef struct native_call {
 int call_begin(native_call *call, PyObject *callback);
 /** Take the GIL back and raise what went wrong. 0, or -1 with an exception. */
 int call_end(native_call *call, module_state *state, swarf_status status);
+/** Run `write` on `handle` and `path` (bytes, as PyUnicode_FSConverter gives it; its reference is taken). None, or NULL
+ *  with an exception. */
+PyObject *call_write(module_state *state, void *context, PyObject *path, PyObject *progress,
+                     swarf_status (*write)(void *context, const char *path, const swarf_progress *progress));
 
 /* ---- buffer.c ---- */
 
@@ -169,8 +175,25 @@ extern PyStructSequence_Desc pick_desc;
 
 typedef struct mesh_object {
     PyObject_HEAD swarf_mesh *handle;
+    int from_stock; /* whether `contour` holds */
+    swarf_contour_report contour;
 } mesh_object;
 extern PyType_Spec mesh_spec;
+/** A Mesh that takes over a reference, also on failure. */
+PyObject *mesh_wrap(PyTypeObject *type, swarf_mesh *handle);
+
+/* ---- measures.c: methods of Mesh ---- */
+
+extern PyStructSequence_Desc shell_desc, contour_desc;
+extern const char mesh_measure_doc[], mesh_shells_doc[], mesh_keep_shells_doc[], mesh_section_doc[];
+PyObject *mesh_measure(PyObject *self, PyObject *none);
+PyObject *mesh_shells(PyObject *self, PyObject *none);
+PyObject *mesh_keep_shells(PyObject *self, PyObject *list);
+PyObject *mesh_section(PyObject *self, PyObject *args, PyObject *keywords);
+PyObject *mesh_contour(PyObject *self, void *closure);
+
+/* ---- mesh.c ---- */
+
 extern PyStructSequence_Desc comparison_desc;
 extern const char compare_volume_doc[];
 PyObject *compare_volume(PyObject *module, PyObject *args, PyObject *keywords);

@@ -136,21 +136,18 @@ static PyObject *stock_copy(PyObject *self, PyObject *Py_UNUSED(none))
     return stock_finish(Py_TYPE(self), &call, status, handle);
 }
 
+static swarf_status write_to(void *stock, const char *path, const swarf_progress *progress)
+{
+    return swarf_stock_write(stock, path, progress);
+}
+
 static PyObject *stock_write(PyObject *self, PyObject *args, PyObject *keywords)
 {
     static char *names[] = {"path", "progress", NULL};
     PyObject *path, *progress = NULL;
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O&|$O:write", names, PyUnicode_FSConverter, &path, &progress))
         return NULL;
-    native_call call;
-    int failed = call_begin(&call, progress);
-    if (!failed) {
-        const swarf_status status = swarf_stock_write(handle_of(self), PyBytes_AsString(path), &call.progress);
-        failed = call_end(&call, state_of(self), status);
-    }
-    Py_DECREF(path);
-    if (failed) return NULL;
-    Py_RETURN_NONE;
+    return call_write(state_of(self), handle_of(self), path, progress, write_to);
 }
 
 /* ---- measuring ---- */

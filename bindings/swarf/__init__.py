@@ -18,6 +18,7 @@ from ._native import (
     Cancelled,
     Cluster,
     Comparison,
+    Contour,
     Cutter,
     Deviation,
     Error,
@@ -29,6 +30,7 @@ from ._native import (
     Picture,
     Program,
     Scene,
+    Shell,
     Simulation,
     Solid,
     Stock,
@@ -50,8 +52,8 @@ from .verify import Verification, verify
 __version__ = version()
 
 __all__ = [
-    "BusyError", "Camera", "Cancelled", "Cluster", "Comparison", "Cutter", "Deviation", "Error", "Finding",
-    "FormatError", "GeometryError", "Job", "Mesh", "Pick", "Picture", "Program", "Result", "Scene", "Simulation",
-    "Solid", "Stock", "Verification", "compare_place", "compare_volume", "deviation_colours", "isa",
+    "BusyError", "Camera", "Cancelled", "Cluster", "Comparison", "Contour", "Cutter", "Deviation", "Error", "Finding",
+    "FormatError", "GeometryError", "Job", "Mesh", "Pick", "Picture", "Program", "Result", "Scene", "Shell",
+    "Simulation", "Solid", "Stock", "Verification", "compare_place", "compare_volume", "deviation_colours", "isa",
     "measure_deviation", "memory_peak", "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
 ]

@@ -500,11 +500,26 @@ class Mesh:
     def read(cls, path: Path) -> Mesh:
         """Mesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."""
     @classmethod
-    def from_stock(cls, stock: Stock, adaptivity: float = 0.0, *, progress: Progress = None) -> Mesh:
-        """The surface of a stock, closed and oriented outwards; adaptivity 0 (uniform) .. 1."""
-    def write(self, path: Path, *, progress: Progress = None) -> None:
-        """Write .stl or .ply (binary) or .obj, by the suffix; beside the target and renamed, so a failure loses
-        nothing."""
+    def from_stock(cls, stock: Stock, error: float = 0.0, *, budget: int = 0, progress: Progress = None) -> Mesh:
+        """The surface of a stock with its edges: closed, oriented outwards, no triangles that cut each other. Vertices
+        are left out while the mesh stays within ``error`` mm of the full one, until at most ``budget`` triangles are
+        left (0: as few as the error allows). What it came to is in ``contour``."""
+    def write(self, path: Path, *, colors: Optional[Table] = None, progress: Progress = None) -> None:
+        """Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure
+        loses nothing. ``colors`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."""
+    def measure(self) -> Shell:
+        """All shells as one Shell; cavities count against the solids."""
+    def shells(self) -> tuple[Shell, ...]:
+        """Tuple of a Shell per piece that hangs together by its edges."""
+    def keep_shells(self, shells: Sequence[int], /) -> Mesh:
+        """A Mesh of these shells alone, by their places in shells()."""
+    def section(self, point: Point, normal: Point) -> tuple[tuple[tuple[float, float, float], ...], ...]:
+        """Where the plane through ``point`` cuts the mesh: a tuple of polylines, each a tuple of (x, y, z) in mm,
+        material on the left seen against ``normal``. In a closed mesh each goes on from its last point to its
+        first."""
+    @property
+    def contour(self) -> Optional[Contour]:
+        """Contour: what Mesh.from_stock() came to; None for other meshes."""
     @property
     def vertices(self) -> memoryview:
         """Read-only (n, 3) float32 view, mm."""
@@ -541,6 +556,35 @@ class Mesh:
     @property
     def degenerate(self) -> int:
         """Triangles with a repeated vertex."""
+
+class Shell(NamedTuple):
+    """A piece of surface that hangs together by its edges, measured."""
+
+    triangles: int
+    vertices: int
+    edges: int
+    open_edges: int
+    euler: int
+    genus: int
+    volume_mm3: float
+    area_mm2: float
+    centre: tuple[float, float, float]
+    inertia: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+    moments: tuple[float, float, float]
+    axes: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+    bounding_box: Optional[tuple[tuple[float, float, float], tuple[float, float, float]]]
+
+class Contour(NamedTuple):
+    """What Mesh.from_stock() came to."""
+
+    full_triangles: int
+    triangles: int
+    sharp_vertices: int
+    parted_cells: int
+    intersections_found: int
+    intersections_left: int
+    error_mm: float
+    budget_met: bool
 
 class Comparison(NamedTuple):
     """Stock and design by volume, mm3."""

@@ -133,6 +133,7 @@ def _mesh(mesh: Optional[_native.Mesh]) -> Optional[dict[str, Any]]:
         "triangles": mesh.triangle_count,
         "closed": mesh.closed,
         "volume_mm3": mesh.volume,
+        "error_mm": mesh.contour.error_mm if mesh.contour else None,
     }
 
 

@@ -15,8 +15,11 @@ from .job import Job
 DEFAULT_RESOLUTION = 512
 
 #: What an output file can be, by its suffix.
-MESH_SUFFIXES = (".stl", ".ply", ".obj")
+MESH_SUFFIXES = (".stl", ".ply", ".obj", ".3mf", ".glb")
 STOCK_SUFFIXES = (".vdb",)
+
+#: What a mesh may be off, in voxels, where nobody says: as much as the stock itself is at its edges.
+MESH_ERROR_VOXELS = 0.1
 
 #: Called with the stage ("stock", "cut", "compare", "mesh", "picture", "write") and the fraction of it that is done; a
 #: true answer cancels, an exception cancels and comes out.
@@ -129,7 +132,7 @@ def simulate(
 
     ``voxel`` in mm, or ``resolution`` voxels along the stock's longest edge (512 unless told); ``batch`` as in
     Stock.simulate(). The stock is compared with the design when the job has one. A mesh is made when ``mesh`` is true
-    or an output needs it; ``outputs`` are .stl, .ply, .obj and .vdb files, ``picture`` a .png file. Seconds of each
+    or an output needs it; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file. Seconds of each
     stage are in the result. Raises what the stages raise; nothing is written before the cutting is done.
     """
     if len(job.program) == 0:
@@ -154,7 +157,7 @@ def simulate(
     if compare and job.design is not None:
         result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
     if mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs):
-        result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, progress=report))
+        result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, progress=report))
     for path in outputs:
         written = result.mesh if output_suffix(path) in MESH_SUFFIXES else stock
         timed("write", lambda report: written.write(path, progress=report))

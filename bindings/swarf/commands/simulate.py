@@ -37,7 +37,7 @@ def add(subparsers: Any) -> None:
                       help=f"voxels along the stock's longest edge (default {DEFAULT_RESOLUTION})")
     command.add_argument("--threads", metavar="T", type=int, default=0, help="threads to use (default: all cores)")
     command.add_argument("--output", metavar="FILE", action="append", default=[],
-                         help="write the result: .stl .ply .obj .vdb (repeatable)")
+                         help="write the result: .stl .ply .obj .3mf .glb .vdb (repeatable)")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
     command.add_argument("--report", metavar="FILE.json", help="write a report")
     gcode.add_arguments(command)

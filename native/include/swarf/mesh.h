@@ -65,6 +65,51 @@ SWARF_API swarf_triangles swarf_mesh_triangles(const swarf_mesh *mesh);
 /** Edges, volume, area, box; measured once when the mesh is made. */
 SWARF_API swarf_topology swarf_mesh_topology(const swarf_mesh *mesh);
 
+/** A piece of surface that hangs together by its edges, or a whole mesh. Moments are of the volume it encloses, at
+ *  density 1 per mm3. */
+typedef struct swarf_shell {
+    size_t triangles;
+    size_t vertices;
+    size_t edges;
+    size_t open_edges; /**< of one triangle only */
+    int64_t euler;     /**< vertices - edges + triangles: 2 for a ball, 0 for a torus */
+    int64_t genus;     /**< holes through it; -1 when it is open */
+    double volume_mm3; /**< negative: a cavity */
+    double area_mm2;
+    double centre[3];     /**< of mass, mm */
+    double inertia[3][3]; /**< about the centre, mm5 */
+    double moment[3];     /**< principal moments, the least first */
+    double axis[3][3];    /**< their axes: unit, right-handed */
+    swarf_box box;
+} swarf_shell;
+
+/** The shells of a mesh, measured. Owned by the caller; immutable. */
+typedef struct swarf_measures swarf_measures;
+SWARF_API swarf_status swarf_measures_create(const swarf_mesh *mesh, swarf_measures **out);
+/** NULL is legal. */
+SWARF_API void swarf_measures_destroy(swarf_measures *measures);
+/** All shells as one; cavities count against the solids. */
+SWARF_API swarf_shell swarf_measures_whole(const swarf_measures *measures);
+/** In the order of their first triangles. */
+SWARF_API const swarf_shell *swarf_measures_shells(const swarf_measures *measures, size_t *count);
+/** The number of its shell for every triangle. */
+SWARF_API const uint32_t *swarf_measures_shell_of(const swarf_measures *measures);
+/** A mesh of some of the shells of `mesh`, of which `measures` was made. SWARF_ERROR_ARGUMENT: no such shell. */
+SWARF_API swarf_status swarf_mesh_create_shells(const swarf_mesh *mesh, const swarf_measures *measures,
+                                                const uint32_t *shells, size_t count, swarf_mesh **out);
+
+/** The curves along which a plane cuts a mesh, as polylines. Owned by the caller; immutable. */
+typedef struct swarf_outline swarf_outline;
+/** Material on the left seen against `normal`. SWARF_ERROR_ARGUMENT: NULL, not finite, no normal. */
+SWARF_API swarf_status swarf_outline_create(const swarf_mesh *mesh, const double point[3], const double normal[3],
+                                            swarf_outline **out);
+/** NULL is legal. */
+SWARF_API void swarf_outline_destroy(swarf_outline *section);
+/** Number of polylines; in a closed mesh each goes on from its last point to its first. */
+SWARF_API size_t swarf_outline_count(const swarf_outline *section);
+/** Points of polyline `index` (below the count), 3 doubles each, in mm. */
+SWARF_API const double *swarf_outline_polyline(const swarf_outline *section, size_t index, size_t *count);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* What a swarf.Mesh measures, shells apart: swarf.Shell, swarf.Contour, sections. */
+#include "native.h"
+
+static const swarf_mesh *handle_of(PyObject *self)
+{
+    return ((mesh_object *)self)->handle;
+}
+
+static PyStructSequence_Field shell_fields[] = {
+    {"triangles", "Number of triangles."},
+    {"vertices", "Number of vertices."},
+    {"edges", "Number of edges."},
+    {"open_edges", "Edges of one triangle only."},
+    {"euler", "Vertices - edges + triangles."},
+    {"genus", "Holes through it; -1 when it is open."},
+    {"volume_mm3", "Volume; negative: a cavity."},
+    {"area_mm2", "Area."},
+    {"centre", "Centre of mass, mm."},
+    {"inertia", "Rows of the inertia tensor about the centre, mm5 at density 1."},
+    {"moments", "Principal moments, the least first, mm5."},
+    {"axes", "Their unit axes, right-handed."},
+    {"bounding_box", "((x, y, z), (x, y, z)) in mm, None when empty."},
+    {NULL, NULL},
+};
+
+PyStructSequence_Desc shell_desc = {
+    .name = "swarf.Shell",
+    .doc = "A piece of surface that hangs together by its edges, measured.",
+    .fields = shell_fields,
+    .n_in_sequence = 13,
+};
+
+static PyStructSequence_Field contour_fields[] = {
+    {"full_triangles", "Triangles before vertices were left out."},
+    {"triangles", "Triangles of the mesh."},
+    {"sharp_vertices", "Vertices on edges and corners, before vertices were left out."},
+    {"parted_cells", "Cells that the surface passes more than once."},
+    {"intersections_found", "Pairs of triangles that cut each other and were put right."},
+    {"intersections_left", "Pairs that still do."},
+    {"error_mm", "Bound of the distance to the mesh of all vertices."},
+    {"budget_met", "Whether there are no more triangles than were allowed."},
+    {NULL, NULL},
+};
+
+PyStructSequence_Desc contour_desc = {
+    .name = "swarf.Contour",
+    .doc = "What Mesh.from_stock() came to.",
+    .fields = contour_fields,
+    .n_in_sequence = 8,
+};
+
+/** A struct sequence of `count` values, whose references it takes; NULL with an exception when one is NULL. */
+static PyObject *sequence_of(PyTypeObject *type, PyObject *const *values, Py_ssize_t count)
+{
+    PyObject *result = PyStructSequence_New(type);
+    int missing = !result;
+    for (Py_ssize_t i = 0; i < count; i++) {
+        if (values[i] && result)
+            PyStructSequence_SetItem(result, i, values[i]);
+        else
+            Py_XDECREF(values[i]);
+        missing |= !values[i];
+    }
+    if (missing) Py_CLEAR(result);
+    return result;
+}
+
+static PyObject *triple(const double v[3])
+{
+    return Py_BuildValue("(ddd)", v[0], v[1], v[2]);
+}
+
+static PyObject *triples(const double m[3][3])
+{
+    return Py_BuildValue("(NNN)", triple(m[0]), triple(m[1]), triple(m[2]));
+}
+
+static PyObject *shell_to_python(module_state *state, const swarf_shell *s)
+{
+    PyObject *const values[] = {PyLong_FromSize_t(s->triangles),
+                                PyLong_FromSize_t(s->vertices),
+                                PyLong_FromSize_t(s->edges),
+                                PyLong_FromSize_t(s->open_edges),
+                                PyLong_FromLongLong(s->euler),
+                                PyLong_FromLongLong(s->genus),
+                                PyFloat_FromDouble(s->volume_mm3),
+                                PyFloat_FromDouble(s->area_mm2),
+                                triple(s->centre),
+                                triples(s->inertia),
+                                triple(s->moment),
+                                triples(s->axis),
+                                box_to_python(&s->box)};
+    return sequence_of(state->shell, values, sizeof values / sizeof *values);
+}
+
+/** The measures of a mesh, NULL with an exception. */
+static swarf_measures *measures_of(PyObject *self)
+{
+    native_call call;
+    swarf_measures *measures = NULL;
+    if (call_begin(&call, NULL)) return NULL;
+    const swarf_status status = swarf_measures_create(handle_of(self), &measures);
+    return call_end(&call, state_of(self), status) ? NULL : measures;
+}
+
+const char mesh_measure_doc[] = "measure($self, /)\n--\n\nAll shells as one Shell; cavities count against the solids.";
+
+PyObject *mesh_measure(PyObject *self, PyObject *Py_UNUSED(none))
+{
+    swarf_measures *measures = measures_of(self);
+    if (!measures) return NULL;
+    const swarf_shell whole = swarf_measures_whole(measures);
+    swarf_measures_destroy(measures);
+    return shell_to_python(state_of(self), &whole);
+}
+
+const char mesh_shells_doc[] = "shells($self, /)\n--\n\nTuple of a Shell per piece that hangs together by its edges.";
+
+PyObject *mesh_shells(PyObject *self, PyObject *Py_UNUSED(none))
+{
+    swarf_measures *measures = measures_of(self);
+    if (!measures) return NULL;
+    size_t count;
+    const swarf_shell *shells = swarf_measures_shells(measures, &count);
+    PyObject *result = PyTuple_New((Py_ssize_t)count);
+    for (size_t i = 0; result && i < count; i++) {
+        PyObject *shell = shell_to_python(state_of(self), &shells[i]);
+        if (!shell || PyTuple_SetItem(result, (Py_ssize_t)i, shell)) Py_CLEAR(result);
+    }
+    swarf_measures_destroy(measures);
+    return result;
+}
+
+const char mesh_keep_shells_doc[] =
+    "keep_shells($self, shells, /)\n--\n\nA Mesh of these shells alone, by their places in shells().";
+
+PyObject *mesh_keep_shells(PyObject *self, PyObject *list)
+{
+    const Py_ssize_t count = PySequence_Size(list);
+    if (count < 0) return NULL;
+    uint32_t *numbers = PyMem_Malloc((size_t)count * sizeof *numbers + 1);
+    if (!numbers) return PyErr_NoMemory();
+    for (Py_ssize_t i = 0; i < count; i++) {
+        PyObject *item = PySequence_GetItem(list, i);
+        const unsigned long value = item ? PyLong_AsUnsignedLong(item) : 0;
+        Py_XDECREF(item);
+        if (PyErr_Occurred()) {
+            PyMem_Free(numbers);
+            return NULL;
+        }
+        numbers[i] = value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
+    }
+    PyObject *result = NULL;
+    native_call call;
+    swarf_measures *measures = measures_of(self);
+    if (measures && !call_begin(&call, NULL)) {
+        swarf_mesh *handle = NULL;
+        const swarf_status status =
+            swarf_mesh_create_shells(handle_of(self), measures, numbers, (size_t)count, &handle);
+        if (!call_end(&call, state_of(self), status)) result = mesh_wrap(Py_TYPE(self), handle);
+    }
+    swarf_measures_destroy(measures);
+    PyMem_Free(numbers);
+    return result;
+}
+
+const char mesh_section_doc[] =
+    "section($self, point, normal)\n--\n\n"
+    "Where the plane through ``point`` cuts the mesh: a tuple of polylines, each a tuple of (x, y, z) in mm, material\n"
+    "on the left seen against ``normal``. In a closed mesh each goes on from its last point to its first.";
+
+PyObject *mesh_section(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"point", "normal", NULL};
+    PyObject *point_object, *normal_object;
+    double point[3], normal[3];
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO:section", names, &point_object, &normal_object)) return NULL;
+    if (buffer_point(point_object, "point", point) || buffer_point(normal_object, "normal", normal)) return NULL;
+    native_call call;
+    swarf_outline *section = NULL;
+    if (call_begin(&call, NULL)) return NULL;
+    const swarf_status status = swarf_outline_create(handle_of(self), point, normal, &section);
+    if (call_end(&call, state_of(self), status)) return NULL;
+    const size_t count = swarf_outline_count(section);
+    PyObject *result = PyTuple_New((Py_ssize_t)count);
+    for (size_t i = 0; result && i < count; i++) {
+        size_t points;
+        const double *at = swarf_outline_polyline(section, i, &points);
+        PyObject *line = PyTuple_New((Py_ssize_t)points);
+        for (size_t k = 0; line && k < points; k++) {
+            PyObject *p = triple(at + 3 * k);
+            if (!p || PyTuple_SetItem(line, (Py_ssize_t)k, p)) Py_CLEAR(line);
+        }
+        if (!line || PyTuple_SetItem(result, (Py_ssize_t)i, line)) Py_CLEAR(result);
+    }
+    swarf_outline_destroy(section);
+    return result;
+}
+
+PyObject *mesh_contour(PyObject *self, void *Py_UNUSED(closure))
+{
+    const mesh_object *mesh = (const mesh_object *)self;
+    if (!mesh->from_stock) Py_RETURN_NONE;
+    const swarf_contour_report *r = &mesh->contour;
+    PyObject *const values[] = {PyLong_FromSize_t(r->full_triangles),      PyLong_FromSize_t(r->triangles),
+                                PyLong_FromSize_t(r->sharp_vertices),      PyLong_FromSize_t(r->parted_cells),
+                                PyLong_FromSize_t(r->intersections_found), PyLong_FromSize_t(r->intersections_left),
+                                PyFloat_FromDouble(r->error_mm),           PyBool_FromLong(r->budget_met)};
+    return sequence_of(state_of(self)->contour, values, sizeof values / sizeof *values);
+}

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""``swarf mesh``: a stock as a mesh with its edges, measured, in pieces."""
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import sys
+from typing import Any, Optional, Sequence
+
+from .. import _native
+from ..console import DONE, FINDINGS, check_outputs
+from ..progress import Bar
+from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES
+
+
+def add(subparsers: Any) -> None:
+    """Add the parser of ``swarf mesh``."""
+    command = subparsers.add_parser(
+        "mesh",
+        help="make a mesh of a stock, measure it, take it apart",
+        description="Make a mesh of the stock in INPUT, or take the mesh in it. Exit status: 0 done, 1 done but the "
+        "budget is not met, 2 could not run. Lengths in mm.",
+    )
+    command.add_argument("input", metavar="INPUT", help="a .vdb file, or a mesh: .stl .ply .obj")
+    command.add_argument("--error", metavar="MM", type=float,
+                         help=f"leave vertices out up to this error (default: {MESH_ERROR_VOXELS:g} voxels; 0: none)")
+    command.add_argument("--budget", metavar="N", type=int, default=0,
+                         help="no more triangles than N, if the error allows")
+    command.add_argument("--output", metavar="FILE", action="append", default=[],
+                         help=f"write the mesh: {' '.join(MESH_SUFFIXES)} (repeatable)")
+    command.add_argument("--split", action="store_true",
+                         help="write every piece that hangs together to a file of its own: FILE-1, FILE-2 ...")
+    command.add_argument("--measure", action="store_true", help="print measures of the whole and its shells as JSON")
+    command.add_argument("--threads", metavar="T", type=int, default=0, help="threads to use (default: all cores)")
+
+
+def contains(outer: Any, inner: Any) -> bool:
+    """Whether a shell's box lies in another's."""
+    (outer_lo, outer_hi), (inner_lo, inner_hi) = outer.bounding_box, inner.bounding_box
+    return all(a <= b for a, b in zip(outer_lo, inner_lo)) and all(a >= b for a, b in zip(outer_hi, inner_hi))
+
+
+def pieces(shells: Sequence[Any]) -> list[list[int]]:
+    """Places of the shells of each piece, the largest piece first; a cavity belongs to the smallest solid round it."""
+    solids = sorted((i for i, shell in enumerate(shells) if shell.volume_mm3 > 0), key=lambda i: -shells[i].volume_mm3)
+    found = {i: [i] for i in solids}
+    for i, shell in enumerate(shells):
+        if shell.volume_mm3 <= 0:
+            round_it = [s for s in solids if contains(shells[s], shell)]
+            if round_it:
+                found[round_it[-1]].append(i)
+    return [found[i] for i in solids]
+
+
+def describe(shell: Any) -> dict[str, Any]:
+    """A Shell for JSON."""
+    return dict(zip(shell.__match_args__, shell))
+
+
+def measures(mesh: _native.Mesh) -> dict[str, Any]:
+    """All that ``--measure`` prints."""
+    shells = mesh.shells()
+    made: Optional[Any] = mesh.contour
+    return {
+        "whole": describe(mesh.measure()),
+        "shells": [describe(shell) for shell in shells],
+        "pieces": len(pieces(shells)),
+        "contour": None if made is None else describe(made),
+    }
+
+
+def read(arguments: argparse.Namespace, bar: Bar) -> _native.Mesh:
+    """The mesh in the input, or that of the stock in it."""
+    if os.path.splitext(arguments.input)[1].lower() != ".vdb":
+        if arguments.error or arguments.budget:
+            raise ValueError(f"{arguments.input}: --error and --budget are for stocks (.vdb); a mesh is taken as it is")
+        return _native.Mesh.read(arguments.input)
+    stock = _native.Stock.read(arguments.input, progress=lambda fraction: bar("read", fraction))
+    error = MESH_ERROR_VOXELS * stock.voxel if arguments.error is None else arguments.error
+    return _native.Mesh.from_stock(stock, error, budget=arguments.budget,
+                                   progress=lambda fraction: bar("mesh", fraction))
+
+
+def numbered(path: str, number: int) -> str:
+    """``part.3mf`` -> ``part-1.3mf``."""
+    stem, suffix = os.path.splitext(path)
+    return f"{stem}-{number}{suffix}"
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Mesh, write, measure."""
+    if abs(arguments.threads) >= 1 << 31:
+        raise ValueError(f"threads: {arguments.threads} is not in 0 .. 1024 (0: one per core)")
+    if arguments.error is not None and not (math.isfinite(arguments.error) and arguments.error >= 0):
+        raise ValueError(f"error {arguments.error:g}: not a length in mm (0 or more)")
+    if not 0 <= arguments.budget < 1 << 32:
+        raise ValueError(f"budget {arguments.budget}: not a number of triangles")
+    if not (arguments.output or arguments.measure):
+        raise ValueError("nothing to do: give --output FILE, --measure or both")
+    if arguments.split and not arguments.output:
+        raise ValueError("--split writes files: give --output FILE")
+    for path in arguments.output:
+        if os.path.splitext(path)[1].lower() not in MESH_SUFFIXES:
+            raise ValueError(f"{path}: unknown suffix; a mesh is {', '.join(MESH_SUFFIXES)}")
+    _native.set_threads(arguments.threads)
+    check_outputs(arguments.output, arguments.input)
+    with Bar() as bar:
+        mesh = read(arguments, bar)
+        parts = [mesh]
+        if arguments.split:
+            parts = [mesh.keep_shells(piece) for piece in pieces(mesh.shells())]
+        for path in arguments.output:
+            for number, part in enumerate(parts, 1):
+                part.write(numbered(path, number) if arguments.split else path,
+                           progress=lambda fraction: bar("write", fraction))
+    if arguments.measure:
+        json.dump(measures(mesh), sys.stdout, indent=2, allow_nan=False)
+        print()
+    made = mesh.contour
+    if made is None:
+        return DONE
+    if made.intersections_left:
+        print(f"swarf: warning: {made.intersections_left} pairs of triangles cut each other: the surface touches "
+              "itself there", file=sys.stderr)
+    if not made.budget_met:
+        print(f"swarf: warning: {made.triangles} triangles are more than {arguments.budget}: an error of "
+              f"{made.error_mm:g} mm leaves no fewer; allow a larger --error", file=sys.stderr)
+        return FINDINGS
+    return DONE

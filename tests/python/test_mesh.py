@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Meshes of stocks: measures, pieces, sections, colours and the formats, read back by other means."""
+import json
+import math
+import struct
+import xml.etree.ElementTree as ElementTree
+import zipfile
+
+import pytest
+
+import swarf
+from swarf.cli import main
+
+VOXEL = 0.2
+
+
+@pytest.fixture(scope="module", name="stock")
+def fixture_stock():
+    """A bar cut in two: 9 mm and 7 mm of 20 mm are left."""
+    stock = swarf.Stock.box((0, 0, -6), (20, 8, 0), VOXEL)
+    program = swarf.Program(start=(11, -5, -7))
+    program.add_line((11, 13, -7))
+    stock.cut(swarf.Cutter("flat:d=4,l=20"), program)
+    return stock
+
+
+@pytest.fixture(scope="module", name="mesh")
+def fixture_mesh(stock):
+    return swarf.Mesh.from_stock(stock, 0.02)
+
+
+def test_contour_says_what_it_did(stock, mesh):
+    full = swarf.Mesh.from_stock(stock)
+    assert mesh.closed and full.closed
+    assert mesh.contour.triangles == mesh.triangle_count < full.triangle_count / 20
+    assert mesh.contour.full_triangles == full.contour.triangles == full.triangle_count
+    assert 0 < mesh.contour.error_mm <= 0.02 * (1 + 1e-6) and full.contour.error_mm == 0
+    assert mesh.contour.intersections_left == 0 and mesh.contour.budget_met is True
+    assert not swarf.Mesh.from_stock(stock, 0.001, budget=20).contour.budget_met
+    assert swarf.Mesh(mesh.vertices, mesh.triangles).contour is None
+    with pytest.raises(ValueError, match="error -1 mm"):
+        swarf.Mesh.from_stock(stock, -1)
+    with pytest.raises(ValueError, match="budget"):
+        swarf.Mesh.from_stock(stock, 0.1, budget=-3)
+    with pytest.raises(ValueError, match="budget of 5 triangles needs an error"):
+        swarf.Mesh.from_stock(stock, budget=5)
+
+
+def test_loose_pieces(mesh):
+    whole, shells = mesh.measure(), mesh.shells()
+    assert [round(shell.volume_mm3 / 48) for shell in shells] == [9, 7]
+    assert whole.volume_mm3 == pytest.approx(sum(shell.volume_mm3 for shell in shells))
+    assert [shell.genus for shell in shells] == [0, 0] and whole.euler == 4
+    assert shells[0].centre == pytest.approx((4.5, 4, -3), abs=0.02)
+    assert shells[1].bounding_box[0] == pytest.approx((13, 0, -6), abs=0.02)
+    part = mesh.keep_shells([1])
+    assert part.closed and part.volume == pytest.approx(shells[1].volume_mm3)
+    with pytest.raises(ValueError, match="shell 2 of 2"):
+        mesh.keep_shells([2])
+    with pytest.raises(TypeError):
+        mesh.keep_shells(["a"])
+
+
+def test_section(mesh):
+    lines = mesh.section((0, 0, -3.03), (0, 0, 1))
+    assert len(lines) == 2
+    areas = [sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(line, line[1:] + line[:1])) / 2 for line in lines]
+    assert sorted(areas) == pytest.approx([7 * 8, 9 * 8], rel=5e-3)
+    assert mesh.section((0, 0, 5), (0, 0, 1)) == ()
+    with pytest.raises(ValueError, match="no length"):
+        mesh.section((0, 0, 0), (0, 0, 0))
+
+
+def colors_of(mesh):
+    return [(255, 128, 0) if i % 2 else (0, 7, 250) for i in range(mesh.triangle_count)]
+
+
+@pytest.mark.parametrize("colored", [False, True])
+def test_3mf(mesh, tmp_path, colored):
+    path = tmp_path / "part.3mf"
+    mesh.write(path, colors=colors_of(mesh) if colored else None)
+    with zipfile.ZipFile(path) as archive:
+        assert archive.testzip() is None
+        assert archive.namelist() == ["[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"]
+        roots = {name: ElementTree.fromstring(archive.read(name)) for name in archive.namelist()}
+    model = roots["3D/3dmodel.model"]
+    core = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+    material = "{http://schemas.microsoft.com/3dmanufacturing/material/2015/02}"
+    assert model.tag == core + "model" and model.get("unit") == "millimeter"
+    vertices = [tuple(float(v.get(c)) for c in "xyz") for v in model.iter(core + "vertex")]
+    triangles = [tuple(int(t.get(f"v{k}")) for k in (1, 2, 3)) for t in model.iter(core + "triangle")]
+    again = swarf.Mesh(vertices, triangles)
+    assert again.vertices.tolist() == mesh.vertices.tolist() and again.triangles.tolist() == mesh.triangles.tolist()
+    palette = [color.get("color") for color in model.iter(material + "color")]
+    assert palette == (["#0007FAFF", "#FF8000FF"] if colored else [])
+    if colored:
+        assert [int(t.get("p1")) for t in model.iter(core + "triangle")] == [i % 2 for i in range(len(triangles))]
+
+
+@pytest.mark.parametrize("colored", [False, True])
+def test_gltf(mesh, tmp_path, colored):
+    path = tmp_path / "part.glb"
+    mesh.write(path, colors=colors_of(mesh) if colored else None)
+    data = path.read_bytes()
+    magic, version, length, size, kind = struct.unpack_from("<4sIII4s", data)
+    assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON") and size % 4 == 0
+    described = json.loads(data[20 : 20 + size])
+    binary = data[28 + size :]
+    assert struct.unpack_from("<I4s", data, 20 + size) == (len(binary), b"BIN\0")
+    assert described["buffers"][0]["byteLength"] == len(binary)
+
+    def table(number, kind, columns):
+        accessor = described["accessors"][number]
+        view = described["bufferViews"][accessor["bufferView"]]
+        count = accessor["count"] * columns
+        values = struct.unpack_from(f"<{count}{kind}", binary, view["byteOffset"])
+        return [values[i : i + columns] for i in range(0, count, columns)]
+
+    positions, corners = table(0, "f", 3), [c[0] for c in table(1, "I", 1)]
+    wanted = mesh.vertices.tolist()
+    assert [positions[c] for c in corners] == [tuple(wanted[c]) for row in mesh.triangles.tolist() for c in row]
+    assert described["accessors"][0]["min"] == [min(p[k] for p in positions) for k in range(3)]
+    assert described["accessors"][0]["max"] == [max(p[k] for p in positions) for k in range(3)]
+    attributes = described["meshes"][0]["primitives"][0]["attributes"]
+    assert ("COLOR_0" in attributes) == colored
+    if colored:
+        rgba = table(2, "B", 4)
+        assert [rgba[c][:3] for c in corners[::3]] == colors_of(mesh)
+
+
+def test_colors_of_ply_and_obj(mesh, tmp_path):
+    colors = colors_of(mesh)
+    for name in ("part.ply", "part.obj", "part.stl"):
+        mesh.write(tmp_path / name, colors=colors)
+        again = swarf.Mesh.read(tmp_path / name)
+        assert again.triangle_count == mesh.triangle_count
+        assert again.volume == pytest.approx(mesh.volume, rel=1e-9)
+    head, body = (tmp_path / "part.ply").read_bytes().split(b"end_header\n", 1)
+    assert b"property uchar blue" in head
+    faces = body[12 * mesh.vertex_count :]
+    assert [tuple(faces[16 * i + 13 : 16 * i + 16]) for i in range(mesh.triangle_count)] == colors
+    first = next(line for line in (tmp_path / "part.obj").read_text().splitlines() if line.startswith("v "))
+    assert len(first.split()) == 7
+    with pytest.raises(ValueError, match="2 colours for"):
+        mesh.write(tmp_path / "part.ply", colors=[(1, 2, 3)] * 2)
+    with pytest.raises(ValueError, match="256"):
+        mesh.write(tmp_path / "part.ply", colors=[(1, 2, 256)] * mesh.triangle_count)
+
+
+def test_empty_meshes_can_be_written(tmp_path):
+    empty = swarf.Mesh([], [])
+    for suffix in ("stl", "ply", "obj", "3mf", "glb"):
+        empty.write(tmp_path / f"empty.{suffix}")
+    with zipfile.ZipFile(tmp_path / "empty.3mf") as archive:
+        ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+
+
+def test_disk_full_says_so(mesh):
+    for suffix in ("stl", "3mf", "glb"):
+        with pytest.raises(OSError):
+            mesh.write(f"/dev/full/part.{suffix}")
+
+
+def test_command(stock, tmp_path, capsys):
+    stock.write(tmp_path / "stock.vdb")
+    source = str(tmp_path / "stock.vdb")
+    assert main(["mesh", source, "--output", str(tmp_path / "part.3mf"), "--measure"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["pieces"] == 2 and len(found["shells"]) == 2
+    assert found["whole"]["volume_mm3"] == pytest.approx(16 * 48, rel=5e-3)
+    assert found["contour"]["error_mm"] <= 0.1 * VOXEL * (1 + 1e-6)
+    assert zipfile.is_zipfile(tmp_path / "part.3mf")
+    assert main(["mesh", source, "--error", "0.05", "--split", "--output", str(tmp_path / "loose.stl")]) == 0
+    volumes = [swarf.Mesh.read(tmp_path / f"loose-{i}.stl").volume for i in (1, 2)]
+    assert volumes == pytest.approx([9 * 48, 7 * 48], rel=1e-2)
+    assert not (tmp_path / "loose-3.stl").exists() and not (tmp_path / "loose.stl").exists()
+    assert main(["mesh", str(tmp_path / "loose-1.stl"), "--measure"]) == 0
+    assert json.loads(capsys.readouterr().out)["contour"] is None
+    assert main(["mesh", source, "--error", "0.01", "--budget", "9", "--measure"]) == 1
+    assert "more than 9" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words, text",
+    [
+        ([], "nothing to do"),
+        (["--split", "--measure"], "give --output"),
+        (["--error", "-1", "--measure"], "error -1"),
+        (["--error", "nan", "--measure"], "error nan"),
+        (["--budget", "-1", "--measure"], "budget -1"),
+        (["--output", "part.step"], "unknown suffix"),
+        (["--output", "/none/part.stl"], "cannot be written"),
+        (["--measure"], "cannot open"),
+    ],
+)
+def test_command_refuses(tmp_path, capsys, words, text):
+    assert main(["mesh", str(tmp_path / "none.vdb"), *words]) == 2
+    assert text in capsys.readouterr().err
+
+
+def test_measures_of_a_cut_sphere_like_pocket():
+    """A ball-ended hole: the volume left is the block's less a capsule's half."""
+    stock = swarf.Stock.box((-5, -5, -8), (5, 5, 0), 0.1)
+    program = swarf.Program(start=(0, 0, 1))
+    program.add_line((0, 0, -6))
+    stock.cut(swarf.Cutter("ball:d=6,l=20"), program)
+    shell, = swarf.Mesh.from_stock(stock, 0.005).shells()
+    exact = 800 - (math.pi * 9 * 3 + 2 / 3 * math.pi * 27)
+    assert shell.volume_mm3 == pytest.approx(exact, rel=1e-3)
+    assert shell.genus == 0
