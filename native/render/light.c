@@ -15,7 +15,7 @@
 enum { BLOCK = 2, PATTERN = 4 };
 
 /* Of the size of what is seen: what lies farther darkens nothing. */
-static const double sky_reach = 0.14;
+static const double sky_reach = 0.18;
 /* Voxels by which rays start above the surface: the field's noise is a hundredth of that. */
 static const double lift = 0.3;
 static const double golden_angle = 2.39996322972865332;
@@ -59,7 +59,7 @@ static float look_up(const swarf_canvas *c, const swarf_sight *sight, int patter
     double open = SWARF_PACKET;
     for (unsigned left = blocked; left; left &= left - 1) {
         const double part = rays.distance[__builtin_ctz(left)] / reach;
-        open -= part < 1 ? 1 - part : 0;
+        open -= part < 1 ? 1 - part * part : 0;
     }
     return (float)(open / SWARF_PACKET);
 }

@@ -46,6 +46,7 @@ static void time_pictures(swarf_scene *scene, const bench_job *job, int resoluti
     options.width = width;
     options.height = width * 9 / 16;
     options.samples = 1;
+    options.edges = options.occlusion = 0; /* the prototype has neither */
     const double pixels = (double)options.width * options.height;
     uint8_t *rgba = malloc(4 * (size_t)pixels);
     if (!rgba) exit(2);
