@@ -147,6 +147,7 @@ static swarf_status add_slot(swarf_cube *cube, const around *a, int x, int y, in
     SWARF_TRY(grow(cube));
     swarf_cube_slot *slot = &cube->slots[cube->slot_count];
     memcpy(slot->stop, stop, sizeof slot->stop);
+    cube->own[cube->slot_count] = a->values[x][y][z];
     for (int number = 0; number < 8; number++)
         slot->values[number] = a->values[x + (number >> 2)][y + (number >> 1 & 1)][z + (number & 1)];
     const int at[3] = {8 * x, 8 * y, 8 * z};

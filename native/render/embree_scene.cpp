@@ -63,7 +63,7 @@ void cube_intersect(const RTCIntersectFunctionNArguments *args)
         if (!args->valid[lane] || !(hits >> id & 1)) continue;
         /* Rounded up, or a cube with a hit at the very same place might not be proposed any more. */
         RTCRayN_tfar(ray, args->N, lane) =
-            std::nextafter(static_cast<float>(p->rays->t[id]), std::numeric_limits<float>::infinity());
+            static_cast<float>(p->rays->t[id]) * (1 + 2 * std::numeric_limits<float>::epsilon());
         RTCHitN_geomID(hit, args->N, lane) = args->geomID;
         RTCHitN_primID(hit, args->N, lane) = args->primID;
     }

@@ -198,9 +198,9 @@ static swarf_status render(swarf_scene *scene, const swarf_camera *camera, swarf
     SWARF_TRY(swarf_look_begin(scene, camera, options, c->height, &c->look));
     SWARF_TRY(swarf_shading_make(&c->look, options, &c->shading));
     const size_t squares = (size_t)c->width * (size_t)c->height;
-    c->middle = malloc(squares * sizeof *c->middle);
-    c->colour = malloc(squares * sizeof *c->colour);
-    if (!c->middle || !c->colour)
+    c->middle = swarf_scene_scratch(scene, squares * (sizeof *c->middle + sizeof *c->colour));
+    c->colour = (float(*)[4])(void *)(c->middle + squares);
+    if (!c->middle)
         return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for %d x %d pixels", (int)options->width,
                           (int)options->height);
     SWARF_TRY(draw(c, progress));
@@ -221,8 +221,6 @@ swarf_status swarf_scene_render(swarf_scene *scene, const swarf_camera *camera, 
     const swarf_status status = render(scene, camera, &c, progress, out);
     swarf_scene_leave(scene);
     swarf_look_end(&c.look);
-    free(c.middle);
-    free(c.colour);
     free(c.sky);
     free(c.sun);
     return status;

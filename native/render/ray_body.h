@@ -9,6 +9,7 @@
  */
 #include "render/ray_kernel.h"
 #include "sweep/counts.h"
+#include "sweep/doubles.h"
 
 #include <math.h>
 
@@ -117,14 +118,25 @@ INLINE void load_corners(const swarf_cube *cube, unsigned wanted, const int32_t 
     for (unsigned left = wanted; left; left &= left - 1) {
         const int lane = __builtin_ctz(left);
         const int place = (at[0][lane] & 7) << 6 | (at[1][lane] & 7) << 3 | (at[2][lane] & 7);
-        const float *value = cube->slots[slot[lane]].values[0] + place;
-        __builtin_prefetch(value);
-        __builtin_prefetch(value + 64);
+        __builtin_prefetch(cube->own[slot[lane]] + place);
+        __builtin_prefetch(cube->own[slot[lane]] + place + 64);
     }
     for (unsigned left = wanted; left; left &= left - 1) {
         const int lane = __builtin_ctz(left);
-        const swarf_cube_slot *own = &cube->slots[slot[lane]];
         const int x = at[0][lane] & 7, y = at[1][lane] & 7, z = at[2][lane] & 7;
+        if (x < 7 && y < 7 && z < 7) {
+            const float *low = cube->own[slot[lane]] + (x << 6 | y << 3 | z);
+            v[0][lane] = low[0];
+            v[1][lane] = low[1];
+            v[2][lane] = low[8];
+            v[3][lane] = low[9];
+            v[4][lane] = low[64];
+            v[5][lane] = low[65];
+            v[6][lane] = low[72];
+            v[7][lane] = low[73];
+            continue;
+        }
+        const swarf_cube_slot *own = &cube->slots[slot[lane]];
         for (int pair = 0; pair < 4; pair++) {
             const int px = x + (pair >> 1), py = y + (pair & 1), which = (px >> 3) << 2 | (py >> 3) << 1;
             const int place = (px & 7) << 6 | (py & 7) << 3;
@@ -155,36 +167,29 @@ INLINE mask intersect_cells(const cells *cell, mask wanted, lanes *t, lanes slop
 }
 
 /* Clip the rays to the cells of the cube: where they come in and how much further they go, both in voxels along them,
- * and where that is in the cube. Plain loops: the compiler makes vectors of them. */
-INLINE unsigned clip(const swarf_cube *cube, const swarf_packet *rays, unsigned active, double enter[LANES],
-                     float local[3][LANES], float reach[LANES])
+ * and where that is in the cube. */
+INLINE unsigned clip(const swarf_cube *cube, const swarf_packet *rays, unsigned active, double enter_of[LANES],
+                     lanes local[3], lanes *reach)
 {
-    double leave[LANES];
-    for (int i = 0; i < LANES; i++) enter[i] = 0;
-    for (int i = 0; i < LANES; i++) leave[i] = rays->t[i];
+    doubles enter = all_doubles(0), leave = load_doubles(rays->t);
     for (int axis = 0; axis < 3; axis++) {
-        const double lo = cube->corner[axis] + cube->lo[axis], hi = cube->corner[axis] + cube->hi[axis];
-        const double *o = rays->origin[axis], *inverse = rays->inverse[axis];
-        for (int i = 0; i < LANES; i++) {
-            const double a = (lo - o[i]) * inverse[i], b = (hi - o[i]) * inverse[i];
-            const double near = a < b ? a : b, far = a < b ? b : a;
-            enter[i] = enter[i] > near ? enter[i] : near;
-            leave[i] = leave[i] < far ? leave[i] : far;
-        }
+        const doubles o = load_doubles(rays->origin[axis]), inverse = load_doubles(rays->inverse[axis]);
+        const doubles a = (all_doubles(cube->corner[axis] + cube->lo[axis]) - o) * inverse;
+        const doubles b = (all_doubles(cube->corner[axis] + cube->hi[axis]) - o) * inverse;
+        enter = larger(enter, lesser(a, b));
+        leave = lesser(leave, larger(a, b));
     }
-    unsigned met = 0;
-    for (int i = 0; i < LANES; i++) met |= (unsigned)(enter[i] <= leave[i]) << i;
+    const unsigned met = up_to(enter, leave) & active;
+    if (!met) return 0;
     for (int axis = 0; axis < 3; axis++) {
-        const double *o = rays->origin[axis], *d = rays->direction[axis];
-        const float lo = cube->lo[axis], hi = cube->hi[axis];
-        for (int i = 0; i < LANES; i++) {
-            const float p = (float)((o[i] - cube->corner[axis]) + enter[i] * d[i]);
-            const float above = p > lo ? p : lo; /* rounding must not push it out */
-            local[axis][i] = above < hi ? above : hi;
-        }
+        const doubles o = load_doubles(rays->origin[axis]), d = load_doubles(rays->direction[axis]);
+        const doubles at = (o - all_doubles(cube->corner[axis])) + enter * d;
+        /* Rounding must not push it out. */
+        local[axis] = clamped(narrow(at), all(cube->lo[axis]), all(cube->hi[axis]));
     }
-    for (int i = 0; i < LANES; i++) reach[i] = (float)(leave[i] - enter[i]);
-    return met & active;
+    *reach = narrow(leave - enter);
+    store_doubles(enter_of, enter);
+    return met;
 }
 
 /* Cells (0 .. 31) in which the lanes stand at t: not outside lo .. hi. */
@@ -223,27 +228,22 @@ INLINE void advance(const sight *ray, mask going, counts shift, counts cell[3], 
 static unsigned trace(const swarf_cube *cube, uint32_t number, swarf_packet *rays, unsigned active)
 {
     double enter[LANES] __attribute__((aligned(64)));
-    float local[3][LANES] __attribute__((aligned(64))), reach_of[LANES] __attribute__((aligned(64)));
     float v[8][LANES] __attribute__((aligned(64)));
-    active = clip(cube, rays, active, enter, local, reach_of);
+    sight ray;
+    lanes reach;
+    active = clip(cube, rays, active, enter, ray.p, &reach);
     if (!active) return 0;
 
-    sight ray;
     counts cell[3], low[3], high[3];
     const counts one = all_counts(1);
     for (int axis = 0; axis < 3; axis++) {
-        float d[LANES] __attribute__((aligned(64))), inverse[LANES] __attribute__((aligned(64)));
-        for (int i = 0; i < LANES; i++) d[i] = (float)rays->direction[axis][i];
-        for (int i = 0; i < LANES; i++) inverse[i] = (float)rays->inverse[axis][i];
-        ray.p[axis] = load(local[axis]);
-        ray.d[axis] = load(d);
-        ray.inverse[axis] = load(inverse);
+        ray.d[axis] = narrow(load_doubles(rays->direction[axis]));
+        ray.inverse[axis] = narrow(load_doubles(rays->inverse[axis]));
         ray.up[axis] = pick_counts(less(all(0), ray.d[axis]), one, all_counts(0));
         low[axis] = all_counts(cube->lo[axis]);
         high[axis] = all_counts(cube->hi[axis] - 1);
         cell[axis] = cell_at(&ray, axis, all(0), low[axis], high[axis]);
     }
-    const lanes reach = load(reach_of);
     const int32_t *const words = (const int32_t *)(const void *)cube->slots;
     enum { SLOT_WORDS = sizeof(swarf_cube_slot) / sizeof(int32_t) };
     lanes t = all(0), hit_t = all(INFINITY), slope[3] = {all(0), all(0), all(0)};
@@ -338,70 +338,55 @@ static void signs(const float values[512], uint64_t words[8])
     }
 }
 
-/* The two below are plain loops: the compiler makes vectors of them. */
-
-static void aim(const swarf_ray_source *source, const double x[LANES], const double y[LANES], swarf_rays *out)
+static void aim(const swarf_ray_source *source, const double x_of[LANES], const double y_of[LANES], swarf_rays *out)
 {
-    double length[LANES];
-    for (int i = 0; i < LANES; i++) length[i] = 0;
+    const doubles x = load_doubles(x_of), y = load_doubles(y_of);
+    doubles square = all_doubles(0), from[3], way[3];
     for (int axis = 0; axis < 3; axis++) {
-        const double eye = source->eye[axis], forward = source->forward[axis];
-        const double right = source->right[axis], up = source->up[axis];
-        double *o = out->origin[axis], *d = out->direction[axis];
-        if (source->parallel) {
-            for (int i = 0; i < LANES; i++) o[i] = eye + (x[i] * right + y[i] * up);
-            for (int i = 0; i < LANES; i++) d[i] = forward;
-        } else {
-            for (int i = 0; i < LANES; i++) o[i] = eye;
-            for (int i = 0; i < LANES; i++) d[i] = forward + (x[i] * right + y[i] * up);
-        }
-        for (int i = 0; i < LANES; i++) length[i] += d[i] * d[i];
+        const doubles eye = all_doubles(source->eye[axis]), forward = all_doubles(source->forward[axis]);
+        const doubles aside = x * all_doubles(source->right[axis]) + y * all_doubles(source->up[axis]);
+        from[axis] = source->parallel ? eye + aside : eye;
+        way[axis] = source->parallel ? forward : forward + aside;
+        square += way[axis] * way[axis];
     }
-    for (int i = 0; i < LANES; i++) length[i] = 1 / sqrt(length[i]);
-    for (int axis = 0; axis < 3; axis++)
-        for (int i = 0; i < LANES; i++) {
-            const double d = out->direction[axis][i] * length[i];
-            out->direction[axis][i] = d;
-            out->origin[axis][i] -= source->back * d;
-        }
-    for (int i = 0; i < LANES; i++) out->reach[i] = INFINITY;
+    const doubles scale = all_doubles(1) / root_doubles(square);
+    for (int axis = 0; axis < 3; axis++) {
+        const doubles d = way[axis] * scale;
+        store_doubles(out->direction[axis], d);
+        store_doubles(out->origin[axis], from[axis] - all_doubles(source->back) * d);
+    }
+    store_doubles(out->reach, all_doubles(INFINITY));
     out->active = (1u << LANES) - 1;
 }
 
-static unsigned enter(const swarf_ray_space *space, const swarf_rays *rays, swarf_packet *out, double moved[LANES])
+static unsigned enter(const swarf_ray_space *space, const swarf_rays *rays, swarf_packet *out, double moved_of[LANES])
 {
-    double leave[LANES], origin[3][LANES];
-    for (int i = 0; i < LANES; i++) moved[i] = 0;
-    for (int i = 0; i < LANES; i++) leave[i] = rays->reach[i] * (1 / space->voxel);
+    const doubles tiny = all_doubles(SWARF_RAY_LEAST), scale = all_doubles(1 / space->voxel);
+    const doubles reach = load_doubles(rays->reach) * scale;
+    doubles moved = all_doubles(0), leave = reach, from[3], way[3];
     for (int axis = 0; axis < 3; axis++) {
-        const double lo = space->lo[axis], hi = space->hi[axis], shift = space->origin[axis], scale = 1 / space->voxel;
-        const double *from = rays->origin[axis], *direction = rays->direction[axis];
-        for (int i = 0; i < LANES; i++) {
-            const double given = direction[i], least = given < 0 ? -SWARF_RAY_LEAST : SWARF_RAY_LEAST;
-            const double d = (given < 0 ? -given : given) < SWARF_RAY_LEAST ? least : given, inverse = 1 / d;
-            const double o = (from[i] - shift) * scale, a = (lo - o) * inverse, b = (hi - o) * inverse;
-            const double near = a < b ? a : b, far = a < b ? b : a;
-            origin[axis][i] = o;
-            out->direction[axis][i] = d;
-            out->inverse[axis][i] = inverse;
-            moved[i] = moved[i] > near ? moved[i] : near;
-            leave[i] = leave[i] < far ? leave[i] : far;
-        }
+        const doubles given = load_doubles(rays->direction[axis]);
+        const doubles d = with_sign(larger(larger(given, -given), tiny), given), inverse = all_doubles(1) / d;
+        const doubles o = (load_doubles(rays->origin[axis]) - all_doubles(space->origin[axis])) * scale;
+        const doubles a = (all_doubles(space->lo[axis]) - o) * inverse,
+                      b = (all_doubles(space->hi[axis]) - o) * inverse;
+        from[axis] = o;
+        way[axis] = d;
+        moved = larger(moved, lesser(a, b));
+        leave = lesser(leave, larger(a, b));
+        store_doubles(out->direction[axis], d);
+        store_doubles(out->inverse[axis], inverse);
     }
-    unsigned met = 0;
-    for (int i = 0; i < LANES; i++) met |= (unsigned)(moved[i] <= leave[i]) << i;
     for (int axis = 0; axis < 3; axis++) {
-        const double lo = space->lo[axis], hi = space->hi[axis];
-        for (int i = 0; i < LANES; i++) {
-            /* Rounding must not push the origin out of the box by which cubes at its rim are found. */
-            const double at = origin[axis][i] + moved[i] * out->direction[axis][i];
-            const double above = at > lo ? at : lo;
-            out->origin[axis][i] = above < hi ? above : hi;
-        }
+        /* Rounding must not push the origin out of the box by which cubes at its rim are found. */
+        const doubles at = from[axis] + moved * way[axis];
+        store_doubles(out->origin[axis],
+                      lesser(larger(at, all_doubles(space->lo[axis])), all_doubles(space->hi[axis])));
     }
-    for (int i = 0; i < LANES; i++) out->t[i] = rays->reach[i] * (1 / space->voxel) - moved[i];
+    store_doubles(out->t, reach - moved);
     for (int i = 0; i < LANES; i++) out->cube[i] = UINT32_MAX;
-    return met & rays->active;
+    store_doubles(moved_of, moved);
+    return up_to(moved, leave) & rays->active;
 }
 
 const swarf_ray_kernel KERNEL_NAME = {aim, enter, trace, signs};

@@ -62,6 +62,7 @@ typedef struct swarf_cube_slot {
 typedef struct swarf_cube {
     swarf_cube_slot *slots;
     int32_t entry[64];
+    const float *own[64]; /**< of each slot in `slots`: its values[0], at hand without a look into memory far away */
     int32_t corner[3];
     uint32_t slot_count, slot_room;
     uint8_t lo[3], hi[3]; /**< the cells that stop rays lie in lo .. hi - 1 of the cube; lo == hi: there are none */

@@ -39,6 +39,8 @@ struct swarf_scene {
     swarf_accel *accel;
     swarf_fixtures *fixtures; /* NULL: none */
     swarf_ray_space space;
+    void *scratch;
+    size_t scratch_size;
     double ray_ms; /* that a ray of the last picture took, with all that belongs to it; 0: no picture yet */
     swarf_cube_tiles tiles;
 };
@@ -214,6 +216,7 @@ void swarf_scene_destroy(swarf_scene *scene)
     swarf_fixtures_destroy(scene->fixtures);
     free_grid(scene);
     free(scene->list);
+    free(scene->scratch);
     free(scene);
 }
 
@@ -228,6 +231,16 @@ swarf_status swarf_scene_enter(swarf_scene *scene)
 void swarf_scene_leave(swarf_scene *scene)
 {
     swarf_stock_leave(scene->stock);
+}
+
+void *swarf_scene_scratch(swarf_scene *scene, size_t bytes)
+{
+    if (bytes > scene->scratch_size || bytes < scene->scratch_size / 4) {
+        free(scene->scratch);
+        scene->scratch = malloc(bytes);
+        scene->scratch_size = scene->scratch ? bytes : 0;
+    }
+    return scene->scratch;
 }
 
 void swarf_scene_box(const swarf_scene *scene, swarf_box *out)

@@ -15,6 +15,10 @@ void swarf_scene_trace(const swarf_scene *scene, swarf_rays *rays, unsigned *ins
 swarf_status swarf_scene_enter(swarf_scene *scene);
 void swarf_scene_leave(swarf_scene *scene);
 
+/** Memory for the picture in the making: kept from picture to picture, for fresh pages cost as much as rays. NULL when
+ *  it is not there. */
+void *swarf_scene_scratch(swarf_scene *scene, size_t bytes);
+
 /** Box of the surface in mm, empty when there is none. */
 void swarf_scene_box(const swarf_scene *scene, swarf_box *out);
 
