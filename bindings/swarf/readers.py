@@ -6,11 +6,15 @@ import importlib.metadata
 import os
 from typing import Any, Callable, Optional
 
+from . import camotics
 from ._native import Program
 from .job import Job
 
 #: Suffixes that machine controls and post-processors give G-code.
 GCODE_SUFFIXES = (".nc", ".ngc", ".gcode", ".gc", ".cnc", ".tap", ".txt")
+
+#: Suffix of CAMotics' projects.
+CAMOTICS_SUFFIX = ".camotics"
 
 #: Entry point group of further readers.
 GROUP = "swarf.readers"
@@ -45,11 +49,15 @@ def read(
         if job is not None:
             raise ValueError(f"{path}: a G-code file is one program, it has no job to choose")
         return read_gcode(path, progress, gcode)
+    if suffix == CAMOTICS_SUFFIX:
+        if job is not None:
+            raise ValueError(f"{path}: a CAMotics project is one job, there is none to choose")
+        return camotics.read(path, progress, gcode)
     known = readers()
     entry = known.get(suffix)
     if entry is None:
         hint = "" if ".fcstd" in known else "; .FCStd needs the FreeCAD add-on of Swarf"
-        suffixes = ", ".join([*GCODE_SUFFIXES, *sorted(known)])
+        suffixes = ", ".join([*GCODE_SUFFIXES, CAMOTICS_SUFFIX, *sorted(known)])
         raise ValueError(f"{path}: unknown suffix {suffix!r}; known: {suffixes}{hint}")
     try:
         reader: Reader = entry.load()

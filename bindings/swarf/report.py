@@ -7,7 +7,7 @@ import os
 import tempfile
 from typing import Any, Optional
 
-from . import _native
+from . import _native, timing
 from .simulate import Result
 from .verify import Verification
 
@@ -26,11 +26,14 @@ def _unique(names: tuple[str, ...]) -> list[str]:
     return result
 
 
-def make(result: Result, input_path: str, seconds_read: float = 0.0) -> dict[str, Any]:
-    """Report of a result; plain types only."""
+def make(
+    result: Result, input_path: str, seconds_read: float = 0.0, machine: Optional[dict[str, Any]] = None
+) -> dict[str, Any]:
+    """Report of a result; plain types only. ``machine``: limits as of timing.read_machine()."""
     job, simulation = result.job, result.simulation
     names = _unique(job.program.operations)
     removed = dict(zip(names, simulation.removed_by_operation))
+    times = timing.summary(job.program, machine)
     box = result.stock.bounding_box()
     seconds = {"read": seconds_read, **result.seconds}
     for stage in ("stock", "cut", "mesh", "picture", "total"):
@@ -44,7 +47,9 @@ def make(result: Result, input_path: str, seconds_read: float = 0.0) -> dict[str
         "threads": _native.threads(),
         "isa": _native.isa(),
         "moves": len(job.program),
-        "machine_seconds": job.program.seconds(),
+        "machine_seconds": times["total"],
+        "machine_seconds_by_tool": {str(tool): seconds for tool, seconds in sorted(times["by_tool"].items())},
+        "machine_seconds_by_operation": dict(zip(names, times["by_operation"])),
         "operations": names,
         "tools": [
             {

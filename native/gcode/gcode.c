@@ -8,16 +8,14 @@
 #include "swarf/gcode.h"
 
 #include "base/file.h"
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/status.h"
-#include "gcode/flow.h"
+#include "gcode/sources.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 
 /* Lines between two looks at the clock: some 0.2 ms of work. */
@@ -29,7 +27,7 @@ static const double report_interval_s = 0.03;
 /* Loops and calls end in an error after this many lines where nobody says how many: some ten seconds. */
 static const size_t line_limit_default = 20000000;
 
-enum { SOURCES_MAX = 1000, LOOPS_MAX = 1000, ARGUMENTS_MAX = SWARF_PARAMETERS_LOCAL };
+enum { LOOPS_MAX = 1000, ARGUMENTS_MAX = SWARF_PARAMETERS_LOCAL };
 
 typedef struct loop {
     const swarf_flow_word *word; /* its repeat */
@@ -51,14 +49,11 @@ typedef struct frame {
 typedef struct runner {
     swarf_machine machine;
     swarf_block block;
-    swarf_source **sources;
-    size_t source_count, source_room;
+    swarf_sources sources;
     frame frames[SWARF_CALLS_MAX + 1];
     int depth;
     loop loops[LOOPS_MAX];
     int loop_count;
-    const char *search; /* folders, ':' between them */
-    char *folder;       /* of the program's file, NULL: none */
     size_t executed, limit;
     double reported, fraction;
     int begun;  /* something but comments was read: a second '%' is the end */
@@ -79,90 +74,6 @@ swarf_gcode_options swarf_gcode_options_default(void)
     options.size = sizeof options;
     for (int k = 0; k < 3; k++) options.start[k] = NAN;
     return options;
-}
-
-/* ---- sources ---- */
-
-static swarf_status add_source(runner *r, const char *name, char *text, size_t length, int owned, swarf_source **out)
-{
-    swarf_source *source = calloc(1, sizeof *source);
-    const size_t size = strlen(name) + 1;
-    char *copy = malloc(size);
-    swarf_status status = source && copy ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
-    if (status == SWARF_OK)
-        status = swarf_array_reserve((void **)&r->sources, &r->source_room, r->source_count + 1, sizeof *r->sources);
-    if (status == SWARF_OK) status = swarf_program_add_source(r->machine.program, name, &source->index);
-    if (status != SWARF_OK) {
-        free(source);
-        free(copy);
-        if (owned) free(text);
-        return status;
-    }
-    memcpy(copy, name, size);
-    source->name = copy;
-    source->text = text;
-    source->length = length;
-    source->owned = owned;
-    r->sources[r->source_count++] = source;
-    *out = source;
-    return SWARF_OK;
-}
-
-/* The file FOLDER/LABEL.ngc, if there is one. */
-static swarf_status try_file(runner *r, const char *folder, size_t length, const char *label, swarf_source **out)
-{
-    static const char *const suffixes[] = {"ngc", "nc"};
-    *out = NULL;
-    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
-        char path[4096];
-        const int size =
-            snprintf(path, sizeof path, "%.*s%s%s.%s", (int)length, folder, length ? "/" : "", label, suffixes[i]);
-        struct stat status;
-        if (size < 0 || (size_t)size >= sizeof path || stat(path, &status) != 0 || !S_ISREG(status.st_mode)) continue;
-        for (size_t k = 0; k < r->source_count; k++)
-            if (strcmp(r->sources[k]->name, path) == 0) *out = r->sources[k];
-        if (*out) return SWARF_OK;
-        if (r->source_count >= SOURCES_MAX) return swarf_fail(SWARF_ERROR_MEMORY, "more than %d files", SOURCES_MAX);
-        char *text;
-        size_t bytes;
-        SWARF_TRY(swarf_file_read(path, &text, &bytes));
-        return add_source(r, path, text, bytes, 1, out);
-    }
-    return SWARF_OK;
-}
-
-static swarf_status look_into(runner *r, swarf_source *source, swarf_flow_kind kind, const char *label,
-                              const swarf_flow_word **out)
-{
-    if (!source->scanned) SWARF_TRY(swarf_flow_scan(&r->machine, source));
-    *out = swarf_flow_find(source, kind, label);
-    return SWARF_OK;
-}
-
-/* Where `label` is: in a text that is there, else in a file of its name. *out is NULL if it is nowhere. */
-static swarf_status find_callee(runner *r, swarf_flow_kind kind, const char *label, swarf_source **source,
-                                const swarf_flow_word **out)
-{
-    *out = NULL;
-    *source = r->frames[r->depth].source;
-    SWARF_TRY(look_into(r, *source, kind, label, out));
-    for (size_t i = 0; i < r->source_count && !*out; i++) {
-        *source = r->sources[i];
-        SWARF_TRY(look_into(r, *source, kind, label, out));
-    }
-    if (*out || strchr(label, '/')) return SWARF_OK;
-    if (r->folder) {
-        SWARF_TRY(try_file(r, r->folder, strlen(r->folder), label, source));
-        if (*source) SWARF_TRY(look_into(r, *source, kind, label, out));
-    }
-    for (const char *at = r->search; at && *at && !*out;) {
-        const char *end = strchr(at, ':');
-        const size_t length = end ? (size_t)(end - at) : strlen(at);
-        SWARF_TRY(try_file(r, at, length, label, source));
-        if (*source) SWARF_TRY(look_into(r, *source, kind, label, out));
-        at = end ? end + 1 : NULL;
-    }
-    return SWARF_OK;
 }
 
 /* ---- jumps ---- */
@@ -310,7 +221,7 @@ static swarf_status call(runner *r, const swarf_flow_word *word)
     SWARF_TRY(check_rest(r, word, at));
     swarf_source *source;
     const swarf_flow_word *entry;
-    SWARF_TRY(find_callee(r, SWARF_FLOW_SUB, label, &source, &entry));
+    SWARF_TRY(swarf_sources_find(&r->sources, &r->machine, top(r)->source, SWARF_FLOW_SUB, label, &source, &entry));
     const swarf_word where = span_of(word);
     if (!entry)
         return swarf_gcode_fail(&r->machine, &where,
@@ -346,7 +257,7 @@ static swarf_status call_numbered(runner *r)
     snprintf(label, sizeof label, "%d", r->machine.call_number);
     swarf_source *source;
     const swarf_flow_word *entry;
-    SWARF_TRY(find_callee(r, SWARF_FLOW_PROGRAM, label, &source, &entry));
+    SWARF_TRY(swarf_sources_find(&r->sources, &r->machine, top(r)->source, SWARF_FLOW_PROGRAM, label, &source, &entry));
     if (!entry)
         return swarf_gcode_fail(&r->machine, &r->machine.call_word,
                                 "calls a program that is not there: no line O%s and no file '%s.ngc'", label, label);
@@ -463,7 +374,7 @@ static swarf_status report(runner *r, const swarf_progress *progress)
     const double time = now();
     if (time - r->reported < report_interval_s) return SWARF_OK;
     r->reported = time;
-    const swarf_source *main = r->sources[0];
+    const swarf_source *main = r->sources.list[0];
     if (r->frames[0].source == main && main->length)
         r->fraction = fmax(r->fraction, (double)(r->frames[0].at - main->text) / (double)main->length);
     return swarf_progress_report(progress, r->fraction);
@@ -522,7 +433,7 @@ static swarf_status run(runner *r, const swarf_progress *progress)
 {
     static const char mark[] = "\xef\xbb\xbf"; /* byte order mark that some editors leave */
     frame *main = &r->frames[0];
-    main->source = r->sources[0];
+    main->source = r->sources.list[0];
     main->at = main->source->text;
     if (main->source->length >= 3 && memcmp(main->at, mark, 3) == 0) main->at += 3;
     r->machine.place.name = main->source->name;
@@ -553,20 +464,17 @@ static swarf_status read_text(const char *text, size_t length, const char *name,
     swarf_program *program = NULL;
     swarf_status status = swarf_program_create(options->start, &program);
     if (status == SWARF_OK) {
-        r->search = options->path;
-        r->folder = (char *)folder;
+        r->sources.search = options->path;
+        r->sources.folder = folder;
         r->limit = (options->line_limit ? options->line_limit : line_limit_default) + length;
         status = swarf_machine_begin(&r->machine, options, program);
         swarf_source *source;
-        if (status == SWARF_OK) status = add_source(r, name, (char *)text, length, 0, &source);
+        if (status == SWARF_OK)
+            status = swarf_sources_add(&r->sources, program, name, (char *)text, length, 0, &source);
         if (status == SWARF_OK) status = run(r, progress);
         swarf_machine_end(&r->machine);
     }
-    for (size_t i = 0; i < r->source_count; i++) {
-        swarf_source_destroy(r->sources[i]);
-        free(r->sources[i]);
-    }
-    free(r->sources);
+    swarf_sources_destroy(&r->sources);
     free(r);
     if (status != SWARF_OK) {
         swarf_program_release(program);

@@ -79,9 +79,11 @@ const swarf_finding *swarf_simulation_findings(const swarf_simulation *simulatio
     return simulation ? simulation->findings : NULL;
 }
 
-static swarf_status report_tool(struct player *player, size_t move, const swarf_section *section, const char *what)
+/* An error at a move; NULL in *out when the operation has one for this tool already. */
+static swarf_status add_finding(struct player *player, size_t move, const swarf_section *section, swarf_finding **out)
 {
     swarf_simulation *result = player->result;
+    *out = NULL;
     for (size_t i = 0; i < result->finding_count; i++)
         if (result->findings[i].tool == section->tool && result->findings[i].operation == section->operation)
             return SWARF_OK;
@@ -94,15 +96,46 @@ static swarf_status report_tool(struct player *player, size_t move, const swarf_
     finding->move = move;
     finding->line = swarf_program_moves(player->program)[move].line;
     finding->tool = section->tool;
-    const char *operation = section->operation >= 0 && (size_t)section->operation < result->operation_count
-                                ? swarf_program_operation_name(player->program, (size_t)section->operation)
-                                : "";
+    *out = finding;
+    return SWARF_OK;
+}
+
+static const char *operation_of(const struct player *player, const swarf_section *section)
+{
+    return section->operation >= 0 && (size_t)section->operation < player->result->operation_count
+               ? swarf_program_operation_name(player->program, (size_t)section->operation)
+               : "";
+}
+
+static swarf_status report_tool(struct player *player, size_t move, const swarf_section *section, const char *what)
+{
+    swarf_finding *finding;
+    SWARF_TRY(add_finding(player, move, section, &finding));
+    if (!finding) return SWARF_OK;
+    const char *operation = operation_of(player, section);
     if (section->tool < 0)
         snprintf(finding->text, sizeof finding->text,
                  "operation '%.80s' moves before any tool is loaded; nothing was cut", operation);
     else
         snprintf(finding->text, sizeof finding->text, "operation '%.80s': tool T%d %s; nothing was cut", operation,
                  (int)section->tool, what);
+    return SWARF_OK;
+}
+
+/* Whether the move is one that cannot be simulated: with A, B, C, U, V or W elsewhere than at 0. */
+static swarf_status check_axes(struct player *player, size_t move, const swarf_section *section, int *turned)
+{
+    double from[6], to[6];
+    *turned = swarf_program_move_axes(player->program, move, from, to);
+    if (!*turned) return SWARF_OK;
+    swarf_finding *finding;
+    SWARF_TRY(add_finding(player, move, section, &finding));
+    if (!finding) return SWARF_OK;
+    int axis = 0;
+    while (axis < 5 && from[axis] == 0.0 && to[axis] == 0.0) axis++;
+    snprintf(finding->text, sizeof finding->text,
+             "operation '%.80s': axis %c moves to %.6g; turned and shifted poses are not simulated, they cut nothing",
+             operation_of(player, section), "ABCUVW"[axis], to[axis]);
     return SWARF_OK;
 }
 
@@ -130,6 +163,9 @@ static swarf_status play_batch(struct player *player, size_t first, size_t end, 
     for (size_t i = first; i < end; i++) {
         SWARF_TRY(swarf_program_path(player->program, i, &player->paths[used]));
         if (!player->paths[used].has_motion) continue;
+        int turned;
+        SWARF_TRY(check_axes(player, i, section, &turned));
+        if (turned) continue;
         if (used++ == 0) first_moving = i;
     }
     const double from = (double)(first - player->first) / (double)player->count;

@@ -8,7 +8,7 @@ import sys
 import time
 from typing import Any, Sequence
 
-from .. import _native, gcode, readers, report, specs
+from .. import _native, gcode, readers, report, specs, timing
 from ..console import DONE, FINDINGS, check_outputs, check_suffix, one_line
 from ..job import Job
 from ..progress import Bar
@@ -40,6 +40,7 @@ def add(subparsers: Any) -> None:
                          help="write the result: .stl .ply .obj .3mf .glb .vdb (repeatable)")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
     command.add_argument("--report", metavar="FILE.json", help="write a report")
+    command.add_argument("--machine", metavar="FILE.json", help="speeds and accelerations of the machine, for its time")
     gcode.add_arguments(command)
 
 
@@ -89,6 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     stock = None if arguments.stock is None else specs.stock(arguments.stock)
 
     options = gcode.options(arguments)
+    machine = None if arguments.machine is None else timing.read_machine(arguments.machine)
     with Bar() as bar:
         started = time.perf_counter()
         job = readers.read(arguments.input, arguments.job, lambda fraction: bar("read", fraction), options)
@@ -110,7 +112,7 @@ def run(arguments: argparse.Namespace) -> int:
             picture=arguments.picture,
             progress=bar,
         )
-    made = report.make(result, arguments.input, seconds_read)
+    made = report.make(result, arguments.input, seconds_read, machine)
     if arguments.report is not None:
         report.write(made, arguments.report)
     for note in job.program.notes:

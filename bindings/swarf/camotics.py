@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""CAMotics projects (.camotics, JSON): one program with its tools and its block of stock, for runs side by side."""
+from __future__ import annotations
+
+import json
+import math
+import os
+from typing import Any, Callable, Optional
+
+from ._native import Cutter, FormatError, Program
+from .job import Job
+
+#: (r, z, bulge) nodes of a tool of radius r and length l; snub is the radius of a snub nose's tip.
+_QUARTER = math.tan(math.pi / 8)
+
+
+def _nodes(shape: str, r: float, length: float, snub: float) -> list[tuple[float, float, float]]:
+    """Meridian of a tool's shape. ValueError for one that is not known or cannot be."""
+    if shape == "cylindrical":
+        return [(0, 0, 0), (r, 0, 0), (r, length, 0), (0, length, 0)]
+    if shape == "ballnose":
+        return [(0, 0, _QUARTER), (r, r, 0), (r, max(length, r), 0), (0, max(length, r), 0)]
+    if shape == "conical":
+        return [(0, 0, 0), (r, length, 0), (0, length, 0)]
+    if shape == "snubnose":
+        return [(0, 0, 0), (snub, 0, 0), (r, length, 0), (0, length, 0)]
+    if shape == "spheroid" and math.isclose(length, 2 * r):
+        return [(0, 0, _QUARTER), (r, r, _QUARTER), (0, 2 * r, 0)]
+    raise ValueError(f"shape {shape!r} is not known; cylindrical, ballnose, conical, snubnose and spheres are")
+
+
+def _number(table: dict[str, Any], key: str, scale: float) -> float:
+    value = table.get(key)
+    if type(value) not in (int, float) or not (math.isfinite(value) and value > 0):
+        raise ValueError(f"{key}: {value!r} is no positive length")
+    return float(value) * scale
+
+
+def cutter(tool: dict[str, Any]) -> Cutter:
+    """The cutter of a project's tool. ValueError, GeometryError."""
+    scale = 25.4 if str(tool.get("units", "metric")).lower() == "imperial" else 1.0
+    shape = str(tool.get("shape", "cylindrical")).lower()
+    radius, length = 0.5 * _number(tool, "diameter", scale), _number(tool, "length", scale)
+    snub = 0.5 * _number(tool, "snub_diameter", scale) if shape == "snubnose" else 0.0
+    return Cutter.from_parts([("flutes", _nodes(shape, radius, length, snub))])
+
+
+def _stock(project: dict[str, Any]) -> Optional[dict[str, Any]]:
+    workpiece = project.get("workpiece", {})
+    bounds = None if workpiece.get("automatic") else workpiece.get("bounds")
+    if bounds is None:
+        return None
+    # the bounds of a workpiece are in mm whatever the units of the project
+    lo, hi = (tuple(float(value) for value in bounds[key]) for key in ("min", "max"))
+    return {"kind": "box", "lo": lo, "hi": hi}
+
+
+def read(
+    path: str, progress: Optional[Callable[[float], Any]] = None, options: Optional[dict[str, Any]] = None
+) -> Job:
+    """The Job of a project; ``options`` as of Program.read_gcode(). OSError; FormatError says what is wrong in it."""
+    with open(path, "rb") as stream:
+        text = stream.read()
+    try:
+        project = json.loads(text)
+        files = project["files"]
+        if len(files) != 1:
+            raise ValueError(f"it has {len(files)} programs; one can be read")
+        source = os.path.join(os.path.dirname(path), files[0])
+        tools = {int(number): cutter(tool) for number, tool in project.get("tools", {}).items()}
+        names = {int(number): str(tool.get("description", "")) for number, tool in project.get("tools", {}).items()}
+        stock = _stock(project)
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        raise FormatError(f"{path}: is no CAMotics project: {type(error).__name__}: {error}") from None
+    program = Program.read_gcode(source, progress=progress, **(options or {}))
+    return Job(name=os.path.basename(path), program=program, tools=tools, tool_names=names, stock=stock)

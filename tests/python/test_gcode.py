@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""read_gcode(), its buffers, swarf check and swarf moves."""
+import json
+import math
+import struct
+
+import conftest
+import pytest
+
+import swarf
+from swarf import camotics, cli, gcode, readers, timing
+
+TEXT = """\
+G21 G90 F100
+T1 M6
+S1000 M3
+G0 X0 Y0 Z5
+(print, hello #5420)
+o100 repeat [2]
+G91 G1 X1
+o100 endrepeat
+G90 G3 X2 Y4 J2
+G4 P1.5
+G0 A90 Z9
+M2
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "part.ngc"
+    path.write_text(TEXT)
+    return path
+
+
+def test_moves_are_buffers(file):
+    program = swarf.read_gcode(file, start=(0, 0, 0))
+    assert len(program) == 7 == program.moves.shape[0]
+    ends = [move[:3] for move in struct.iter_unpack("=dddfIiI", program.moves)]
+    assert ends[1:4] == [(0, 0, 5), (1, 0, 5), (2, 0, 5)] and ends[-1] == (2, 4, 9)
+    assert struct.unpack("=dddd2i", program.arcs)[:4] == pytest.approx((2, 2, 5, math.pi))
+    assert struct.unpack("=Q6d", program.axes) == (6, 90, 0, 0, 0, 0, 0)
+    assert program.sources == (str(file),)
+    assert program.notes == (("message", str(file), 5, 2, " hello 0.000000"),)
+
+
+def test_options(file, tmp_path):
+    (tmp_path / "t.tbl").write_text("T1 Z10 D6\n")
+    (tmp_path / "sub.ngc").write_text("o<sub> sub\nG0 X#1\no<sub> endsub\n")
+    main = tmp_path / "main.ngc"
+    main.write_text("T1 M6 G43\no<sub> call [3]\n/G0 X4\nM2\n")
+    for tools in (tmp_path / "t.tbl", [(1, 6.0, 10.0)]):
+        program = swarf.read_gcode(main, tools=tools, start=(0, 0, 0), block_delete=True)
+        assert [move[0] for move in struct.iter_unpack("=dddfIiI", program.moves)] == [0, 0, 3]
+    with pytest.raises(ValueError, match="dialect"):
+        swarf.read_gcode(main, dialect="french")
+    with pytest.raises(ValueError, match="line_limit"):
+        swarf.read_gcode(main, line_limit=-1)
+    with pytest.raises(TypeError):
+        swarf.read_gcode(main, tools=[(1, 2)])
+    with pytest.raises(OSError):
+        swarf.read_gcode(main, tools=tmp_path / "none.tbl")
+    with pytest.raises(swarf.FormatError, match=r"main.ngc:1:4: error: .* not in the tool table"):
+        swarf.read_gcode(main, tools=[])
+
+
+def test_times():
+    program = swarf.Program(start=(0, 0, 0))
+    program.add_line((120, 0, 0), feed_mm_min=6000)
+    assert program.times(feed_mm_min=6000, acceleration_mm_s2=500).tolist() == pytest.approx([1.4])
+    assert program.times(feed_mm_min=(600, 1, 1), acceleration_mm_s2=(0, 0, 0)).tolist() == pytest.approx([12])
+    with pytest.raises(ValueError, match="rotary"):
+        program.times(rotary_deg_min=0)
+
+
+def test_swarf_moves(file, capsys):
+    assert cli.main(["moves", str(file), "--start", "0,0,0"]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "operation 0 T1", "tool 1", "spindle off 0.000000", "coolant off", "offset G54",
+        "2 tool 1",
+        "spindle cw 1000.000000",
+        "4 rapid X0.000000 Y0.000000 Z5.000000",
+        "7 feed X1.000000 Y0.000000 Z5.000000 F100.000000",
+        "7 feed X2.000000 Y0.000000 Z5.000000 F100.000000",
+        "9 arc xy X2.000000 Y4.000000 Z5.000000 I2.000000 J2.000000 K5.000000 A180.000000 F100.000000",
+        "10 dwell 1.500000",
+        "11 rapid X2.000000 Y4.000000 Z9.000000 A90.000000 B0.000000 C0.000000 U0.000000 V0.000000 W0.000000",
+    ]
+
+
+def test_swarf_check(file, tmp_path, capsys):
+    assert cli.main(["check", str(file)]) == 0
+    assert capsys.readouterr().out == ""
+    assert cli.main(["check", str(file), "--messages"]) == 0
+    assert capsys.readouterr().out == f"{file}:5:2: message: hello 0.000000\n"
+    bad = tmp_path / "bad.ngc"
+    bad.write_text("M101\nG0 X1\nG1 Y2\n")
+    assert cli.main(["check", str(bad)]) == 1
+    assert capsys.readouterr().out.splitlines() == [
+        f"{bad}:1:1: warning: 'M101' runs a program of the machine's owner; it is not simulated",
+        f"{bad}:3:1: error: 'G1' has no feed; write F and the feed first",
+    ]
+    assert cli.main(["check", str(tmp_path / "none.ngc")]) == 2
+    assert cli.main(["check", str(bad), "--start", "1,2"]) == 2
+    assert "wanted X,Y,Z" in capsys.readouterr().err
+
+
+def test_note_text_is_one_line():
+    assert gcode.note_text(("error", "a", 1, 2, "b\nc")) == "a:1:2: error: b c"
+
+
+def test_times_by_tool_and_operation(tmp_path):
+    text = "G21 F6000\nG0 X0 Y0 Z0\nT1 M6\nG1 X120\nT2 M6\nG1 X0\nT1 M6\nG1 X120\nM2\n"
+    program = swarf.Program.parse_gcode(text, start=(0, 0, 0))
+    machine = tmp_path / "m.json"
+    machine.write_text('{"feed_mm_min": 6000, "acceleration_mm_s2": [500, 500, 500], "tool_change_s": 8}')
+    times = timing.summary(program, timing.read_machine(machine))
+    assert times["total"] == pytest.approx(3 * 1.4 + 3 * 8)
+    assert times["by_tool"] == pytest.approx({-1: 0, 1: 2 * 9.4, 2: 9.4})
+    assert times["by_operation"] == pytest.approx([0, 9.4, 9.4, 9.4])
+
+
+@pytest.mark.parametrize(
+    "text, says",
+    [
+        ("{", "is no JSON"),
+        ("[]", "wanted an object"),
+        ('{"speed": 1}', "'speed' is not known"),
+        ('{"rapid_mm_min": [1, 2]}', "rapid_mm_min"),
+        ('{"junction_mm": [1, 2, 3]}', "junction_mm"),
+        ('{"feed_mm_min": "fast"}', "feed_mm_min"),
+        ('{"feed_mm_min": true}', "feed_mm_min"),
+        ('{"feed_mm_min": NaN}', "feed_mm_min"),
+    ],
+)
+def test_impossible_machines(tmp_path, text, says):
+    machine = tmp_path / "m.json"
+    machine.write_text(text)
+    with pytest.raises(ValueError, match=says):
+        timing.read_machine(machine)
+
+
+def test_rotary_axes_are_refused_by_the_stock():
+    stock = swarf.Stock.box((0, 0, -10), (60, 40, 0), 1)
+    program = swarf.Program.parse_gcode("T1 M6 F100\nG0 X-5 Y20 Z-2\nG1 X30\nG0 Z5 A90\nG1 Z-20\nM2\n", start=(-5, 20, 5))
+    simulation = stock.simulate(program, {1: swarf.Cutter("flat:d=6,l=20")})
+    assert [(f.severity, f.line) for f in simulation.findings] == [("error", 4)]
+    assert "axis A moves to 90" in simulation.findings[0].text
+    removed = simulation.volume_initial - simulation.volume_final
+    assert removed == pytest.approx(2 * (30 * 6 + math.pi * 4.5), rel=0.02)  # the slot before it, nothing after
+
+
+def project(**changes):
+    tool = {"units": "metric", "shape": "cylindrical", "length": 20, "diameter": 6}
+    return {"units": "metric", "tools": {"1": {**tool, **changes}}, "files": ["slot.nc"],
+            "workpiece": {"automatic": False, "bounds": {"min": [0, 0, -10], "max": [60, 40, 0]}}}
+
+
+def test_camotics_project(tmp_path):
+    (tmp_path / "slot.nc").write_text(conftest.GCODE)
+    path = tmp_path / "slot.camotics"
+    path.write_text(json.dumps(project()))
+    job = readers.read(str(path))
+    assert job.stock == {"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)} and list(job.tools) == [1]
+    report = tmp_path / "r.json"
+    assert cli.main(["simulate", str(path), "--voxel", "0.5", "--report", str(report)]) == 0
+    assert json.loads(report.read_text())["volume_mm3"]["removed"] == pytest.approx(conftest.SLOT_MM3, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "changes, volume",
+    [
+        ({}, math.pi * 9 * 20),
+        ({"units": "imperial", "diameter": 6 / 25.4, "length": 20 / 25.4}, math.pi * 9 * 20),
+        ({"shape": "ballnose"}, math.pi * (18 + 9 * 17)),
+        ({"shape": "conical"}, math.pi * 9 * 20 / 3),
+        ({"shape": "snubnose", "snub_diameter": 2}, math.pi * 20 * (9 + 3 + 1) / 3),
+        ({"shape": "spheroid", "length": 6}, math.pi * 36),
+    ],
+)
+def test_camotics_tools(changes, volume):
+    assert camotics.cutter(project(**changes)["tools"]["1"]).volume() == pytest.approx(volume)
+
+
+@pytest.mark.parametrize(
+    "text, says",
+    [
+        ("{", "JSONDecodeError"),
+        ("[]", "TypeError"),
+        ("{}", "files"),
+        (json.dumps(project(shape="cube")), "'cube' is not known"),
+        (json.dumps(project(diameter=-1)), "diameter: -1 is no positive length"),
+        (json.dumps({**project(), "files": ["a", "b"]}), "2 programs"),
+    ],
+)
+def test_impossible_projects(tmp_path, text, says):
+    path = tmp_path / "bad.camotics"
+    path.write_text(text)
+    with pytest.raises(swarf.FormatError, match=says):
+        readers.read(str(path))
