@@ -21,8 +21,8 @@
 
 static const double straight_rad = 0.05;
 
-/* The way back along the same line, whichever side rounding puts it on: around the corner. */
-static const double reverse_rad = 3.1405;
+/* The way back, to the same limit, whichever side it bends to: around the corner. */
+static const double reverse_rad = 3.0915926;
 
 /* Paths shorter than this are rounding of what is none. */
 static const double nothing_mm = 1e-7;

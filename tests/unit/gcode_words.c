@@ -239,6 +239,9 @@ static void test_compensation(void)
     IS_WITH_TABLE("T1 M6 F9\nG41\nG1 X10\nX20\nY20\nG40 G0 X0 Y0", "t1 P0,0,0 f10,3,0@9 f17,3,0@9 f17,20,0@9 r0,0,0");
     IS_WITH_TABLE("G41 D2 F9\nG1 X10\nX20\nM2", "f10,2,10@9 f20,2,10@9");
     IS("F9 G18 G41.1 D2\nG1 X10 \nX20\nZ-20\nM2", "f10,0,9@9 f19,0,9@9 f19,0,-20@9");
+    /* a way back that bends by less than 0.05 rad from straight goes around the corner, to whichever side */
+    IS("F9 G0 Z0\nG42.1 D2\nG1 X10\nX20\nX10 Y.3\nM2",
+       "r0,0,0 f10,-1,0@9 f20,-1,0@9 a178.282(20,0,0)20.03,0.99955,0 f10.03,1.29955,0@9");
     IS("F9 G41.1 D2\nG1 X1", "leads in over 1 mm; it must be longer than the radius");
     IS("F9 G41.1 D8\nG1 X10\nX12 Y.5\nX5 Y10", "cannot reach without gouging");
     IS("F9 G42.1 D30\nG1 X20\nG2 X30 Y10 I10", "does not fit");

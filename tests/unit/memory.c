@@ -148,8 +148,14 @@ void free(void *block)
 /* A pocket's corner: lines on the level and on a slope, an arc, a plunge. */
 static const char program_text[] = "G21 G90 G17\nT1 M6\nG0 X1 Y1 Z12\nG1 Z7 F300\nX7 Z6\nG3 X9 Y3 R2\nG1 Y9\nM2\n";
 
+/* All that the reader of G-code keeps lists of: files' words, names, tools, operations, what compensation holds. */
+static const char language_text[] = "o1 sub\n#<a>=#1\no<two> call [1]\no1 endsub\no<two> sub\n#<_g>=2\no<two> endsub\n"
+                                    "o1 call [3]\n(print, #<_g>)\nT2 M6\nM101\nG10 L1 P2 R1\nF9 G0 X0 Y0 Z0\nG41\n"
+                                    "G1 X10\nX20\nZ-1\nG4 P1\nY20\nG40 G0 X0\nG0 A90\nM98 P7\nM2\nO7\nM99\n";
+
 struct things {
-    swarf_program *program;
+    swarf_program *program, *language;
+    swarf_notes *notes;
     swarf_cutter *cutter;
     swarf_stock *stock;
     swarf_simulation *simulation;
@@ -160,6 +166,17 @@ struct things {
 static swarf_status read_program(struct things *t)
 {
     return swarf_gcode_read(program_text, strlen(program_text), "pocket.nc", NULL, NULL, &t->program);
+}
+
+static swarf_status read_language(struct things *t)
+{
+    swarf_gcode_options options = swarf_gcode_options_default();
+    swarf_notes_destroy(t->notes);
+    t->notes = NULL;
+    const swarf_status status = swarf_notes_create(&t->notes);
+    if (status != SWARF_OK) return status;
+    options.notes = t->notes;
+    return swarf_gcode_read(language_text, strlen(language_text), "language.nc", &options, NULL, &t->language);
 }
 
 static swarf_status make_cutter(struct things *t)
@@ -204,6 +221,7 @@ static const struct step {
     step_fn fn;
 } steps[] = {
     {"read the program", read_program},
+    {"read the language", read_language},
     {"make the cutter", make_cutter},
     {"make the stock", make_stock},
     {"simulate", simulate},
@@ -220,6 +238,8 @@ static void release(struct things *t)
     swarf_stock_destroy(t->stock);
     swarf_cutter_release(t->cutter);
     swarf_program_release(t->program);
+    swarf_program_release(t->language);
+    swarf_notes_destroy(t->notes);
 }
 
 /* One go through everything. */
