@@ -4,10 +4,6 @@
 
 /* ---- solids ---- */
 
-typedef struct solid_object {
-    PyObject_HEAD swarf_solid *handle;
-} solid_object;
-
 static swarf_solid *solid_of(PyObject *self)
 {
     return ((solid_object *)self)->handle;
@@ -135,8 +131,7 @@ static void deviation_dealloc(PyObject *self)
     object_free(self);
 }
 
-/** A struct sequence of these items, which it takes over. */
-static PyObject *make_sequence(PyTypeObject *type, PyObject **items, Py_ssize_t count)
+PyObject *make_sequence(PyTypeObject *type, PyObject **items, Py_ssize_t count)
 {
     PyObject *result = PyStructSequence_New(type);
     for (Py_ssize_t i = 0; i < count; i++) {

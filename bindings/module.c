@@ -108,6 +108,7 @@ static int module_exec(PyObject *module)
                    add_sequence(module, &finding_desc, &state->finding) ||
                    add_sequence(module, &comparison_desc, &state->comparison) ||
                    add_sequence(module, &cluster_desc, &state->cluster) ||
+                   add_sequence(module, &check_desc, &state->check) ||
                    add_type(module, &solid_spec, &state->solid, 0) ||
                    add_type(module, &deviation_spec, &state->deviation, 0) ||
                    add_sequence(module, &shell_desc, &state->shell) ||
@@ -132,6 +133,7 @@ static int module_traverse(PyObject *module, visitproc visit, void *arg)
     Py_VISIT(state->finding);
     Py_VISIT(state->comparison);
     Py_VISIT(state->cluster);
+    Py_VISIT(state->check);
     Py_VISIT(state->solid);
     Py_VISIT(state->deviation);
     Py_VISIT(state->shell);
@@ -160,6 +162,7 @@ static int module_clear(PyObject *module)
     Py_CLEAR(state->finding);
     Py_CLEAR(state->comparison);
     Py_CLEAR(state->cluster);
+    Py_CLEAR(state->check);
     Py_CLEAR(state->solid);
     Py_CLEAR(state->deviation);
     Py_CLEAR(state->shell);

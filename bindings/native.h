@@ -31,6 +31,7 @@ typedef struct module_state {
     PyTypeObject *finding; /* struct sequences */
     PyTypeObject *comparison;
     PyTypeObject *cluster;
+    PyTypeObject *check;
     PyTypeObject *solid;
     PyTypeObject *deviation;
     PyTypeObject *shell;
@@ -200,6 +201,9 @@ PyObject *compare_volume(PyObject *module, PyObject *args, PyObject *keywords);
 
 /* ---- deviation.c ---- */
 
+typedef struct solid_object {
+    PyObject_HEAD swarf_solid *handle;
+} solid_object;
 extern PyType_Spec solid_spec;
 extern PyType_Spec deviation_spec;
 extern PyStructSequence_Desc cluster_desc;
@@ -209,5 +213,14 @@ extern const char compare_place_doc[];
 PyObject *compare_place(PyObject *module, PyObject *args, PyObject *keywords);
 extern const char deviation_colours_doc[];
 PyObject *deviation_colours(PyObject *module, PyObject *args, PyObject *keywords);
+
+/** A struct sequence of these items, which it takes over; NULL with an exception when one of them is NULL. */
+PyObject *make_sequence(PyTypeObject *type, PyObject **items, Py_ssize_t count);
+
+/* ---- check.c ---- */
+
+extern PyStructSequence_Desc check_desc;
+extern const char stock_check_doc[];
+PyObject *stock_check(PyObject *self, PyObject *args, PyObject *keywords);
 
 #endif

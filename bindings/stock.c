@@ -329,6 +329,7 @@ static PyMethodDef stock_methods[] = {
      "Cut with the flutes of one cutter along moves first .. first + count - 1 of a program, whatever their tool,\n"
      "all at once. Cancelling leaves some moves cut."},
     {"simulate", WITH_KEYWORDS(stock_simulate), METH_VARARGS | METH_KEYWORDS, stock_simulate_doc},
+    {"check", WITH_KEYWORDS(stock_check), METH_VARARGS | METH_KEYWORDS, stock_check_doc},
     {"union", stock_union, METH_O, "union($self, other, /)\n--\n\nAdd another stock of the same voxels to this one."},
     {"intersection", stock_intersection, METH_O,
      "intersection($self, other, /)\n--\n\nKeep what is in another stock of the same voxels too."},

@@ -16,6 +16,7 @@ from ._native import (
     BusyError,
     Camera,
     Cancelled,
+    CheckFinding,
     Cluster,
     Comparison,
     Contour,
@@ -52,8 +53,8 @@ from .verify import Verification, verify
 __version__ = version()
 
 __all__ = [
-    "BusyError", "Camera", "Cancelled", "Cluster", "Comparison", "Contour", "Cutter", "Deviation", "Error", "Finding",
-    "FormatError", "GeometryError", "Job", "Mesh", "Pick", "Picture", "Program", "Result", "Scene", "Shell",
-    "Simulation", "Solid", "Stock", "Verification", "compare_place", "compare_volume", "deviation_colours", "isa",
-    "measure_deviation", "memory_peak", "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
+    "BusyError", "Camera", "Cancelled", "CheckFinding", "Cluster", "Comparison", "Contour", "Cutter", "Deviation",
+    "Error", "Finding", "FormatError", "GeometryError", "Job", "Mesh", "Pick", "Picture", "Program", "Result", "Scene",
+    "Shell", "Simulation", "Solid", "Stock", "Verification", "compare_place", "compare_volume", "deviation_colours",
+    "isa", "measure_deviation", "memory_peak", "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
 ]

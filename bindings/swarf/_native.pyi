@@ -279,6 +279,25 @@ class Stock:
         """Play moves first .. first + count - 1 of a program with tools {number: Cutter}. ``batch`` moves are cut at
         once: 0 as many as share a tool and an operation, 1 move by move. A tool that is missing or has no flutes is a
         finding of class "error". Cancelling leaves the moves so far cut."""
+    def check(
+        self,
+        program: Program,
+        tools: dict[int, Cutter],
+        *,
+        fixtures: Sequence[Solid] = (),
+        design: Optional[Solid] = None,
+        tolerance: float = 0.05,
+        clearance: float = 0.0,
+        travel: Optional[Box] = None,
+        no_plunge: Sequence[int] = (),
+        stop: bool = False,
+        progress: Progress = None,
+    ) -> tuple[CheckFinding, ...]:
+        """Play a program as simulate() does, and look at each move before it is cut: findings in the order of the
+        moves. ``fixtures`` are Solids that nothing may touch, ``design`` a Solid that shank and holder may not touch
+        and flutes by no more than ``tolerance``; ``clearance`` (mm) is wanted between holder and stock; ``travel`` is a
+        box that the tip has to stay in; ``no_plunge`` are tools that cannot plunge; ``stop`` ends with the first
+        error."""
     def union(self, other: Stock, /) -> None:
         """Add another stock of the same voxels to this one."""
     def intersection(self, other: Stock, /) -> None:
@@ -630,6 +649,22 @@ class Solid:
     @property
     def hole_mm2(self) -> float:
         """The holes have no greater area."""
+
+class CheckFinding(NamedTuple):
+    """Something that Stock.check() found."""
+
+    severity: Literal["note", "warning", "error"]
+    kind: str
+    part: PartKind
+    operation: int
+    move: int
+    line: int
+    tool: int
+    t: float
+    tip: tuple[float, float, float]
+    point: tuple[float, float, float]
+    depth: float
+    text: str
 
 class Cluster(NamedTuple):
     """Neighbouring places where the deviation is beyond tolerance."""

@@ -6,9 +6,9 @@ import os
 import struct
 import time
 from dataclasses import dataclass, field
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, Sequence
 
-from ._native import Cluster, Deviation, Mesh, Scene, Solid, Stock, compare_place, measure_deviation
+from ._native import CheckFinding, Cluster, Deviation, Mesh, Scene, Solid, Stock, compare_place, measure_deviation
 from .job import Job
 from .simulate import Progress, Result, make_stock, simulate
 
@@ -72,13 +72,16 @@ def verify(
     region: Optional[Any] = None,
     voxel: Optional[float] = None,
     resolution: Optional[float] = None,
+    fixtures: Sequence[Mesh] = (),
+    clearance: float = 0.0,
     progress: Optional[Progress] = None,
 ) -> Verification:
     """Simulate a job and hold what is left of its stock against a design, the job's own unless given.
 
     ``tolerance`` in mm is for both sides; ``excess`` (material left) and ``gouge`` (material missing) set one of them.
     ``allowance`` is material that is meant to be left. Material left where no move went is a warning, with
-    ``complete`` an error. ValueError without a design; GeometryError where it encloses nothing; whatever simulate()
+    ``complete`` an error. Rapids through material, shanks and holders that touch it, and all else that Stock.check()
+    looks for are findings too; ``fixtures`` and ``clearance`` are handed to it. ValueError without a design; GeometryError where it encloses nothing; whatever simulate()
     raises.
     """
     mesh = job.design if design is None else design
@@ -93,14 +96,19 @@ def verify(
     result = simulate(job, voxel=voxel, resolution=resolution, compare=False, mesh=False, progress=progress)
     first = make_stock(job.stock, voxel=None if job.stock and job.stock["kind"] == "vdb" else result.stock.voxel)
     started = time.perf_counter()
+    checked = first.copy().check(
+        job.program, job.tools, fixtures=[Solid(fixture) for fixture in fixtures], clearance=clearance,
+        progress=stage("check"))
+    result.seconds["check"] = time.perf_counter() - started
+    started = time.perf_counter()
     deviation = measure_deviation(
         result.stock, solid, excess=limits[0], gouge=limits[1], allowance=allowance, region=region, first=first,
         program=job.program, tools=job.tools, progress=stage("compare"))
     result.seconds["compare"] = time.perf_counter() - started
-    result.seconds["total"] += result.seconds["compare"]
+    result.seconds["total"] += result.seconds["check"] + result.seconds["compare"]
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, limits, allowance, complete=complete)
-    made.findings = _simulation_findings(result) + _design_findings(solid, first, mesh) + [
+    made.findings = _check_findings(job, checked) + _design_findings(solid, first, mesh) + [
         _cluster_finding(job, cluster, complete) for cluster in deviation.clusters]
     return made
 
@@ -117,10 +125,10 @@ def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:
     return (names[index] if 0 <= index < len(names) else None), line
 
 
-def _simulation_findings(result: Result) -> list[Verdict]:
-    names = result.job.program.operations
+def _check_findings(job: Job, checked: Sequence[CheckFinding]) -> list[Verdict]:
+    names = job.program.operations
     return [Verdict(found.severity, found.text, names[found.operation] if 0 <= found.operation < len(names) else None,
-                    found.line, found.move) for found in result.simulation.findings]
+                    found.line, found.move, found.tip) for found in checked]
 
 
 def _design_findings(solid: Solid, first: Stock, mesh: Mesh) -> list[Verdict]:

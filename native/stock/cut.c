@@ -20,6 +20,12 @@
 
 enum { COLUMN = 32, COLUMN_LEAVES = COLUMN / SWARF_LEAF_DIM, NODE_COLUMNS = SWARF_NODE_DIM / COLUMN };
 
+/* How deep tracks go into the stock at most, in one column: where in voxels of the layout. */
+struct touch {
+    float depth; /* mm */
+    int32_t ijk[3];
+};
+
 struct cut_work {
     swarf_stock *stock;
     const swarf_tree_layout *layout;
@@ -32,6 +38,9 @@ struct cut_work {
     int32_t columns_y;
     swarf_column *scratch; /* one per thread */
     int scratch_count;
+    struct touch *touches; /* one per column with tracks: nothing is cut, only looked for; else NULL */
+    float enough;          /* depth from which on it need not be looked for any more */
+    int *found;            /* 1 once that deep a place is known; only by atomic operations */
 };
 
 /* Place of a leaf, by its coordinates in leaves. */
@@ -60,8 +69,21 @@ static int occupied(const swarf_tree_layout *layout, int32_t x, int32_t y, int32
     return 0;
 }
 
-static void remove_cube(const struct cut_work *work, int32_t x, int32_t y, int32_t z, int edge)
+/* Of equally deep places the first in the order of voxels: the order of threads must not show. */
+static void see_touch(struct touch *touch, float depth, int32_t x, int32_t y, int32_t z)
 {
+    if (depth <= touch->depth) return;
+    *touch = (struct touch){depth, {x, y, z}};
+}
+
+static void remove_cube(const struct cut_work *work, struct touch *touch, int32_t x, int32_t y, int32_t z, int edge)
+{
+    const int32_t middle = edge * SWARF_LEAF_DIM / 2;
+    if (touch) {
+        see_touch(touch, work->layout->background, x * SWARF_LEAF_DIM + middle, y * SWARF_LEAF_DIM + middle,
+                  z * SWARF_LEAF_DIM + middle);
+        return;
+    }
     for (int i = 0; i < edge * edge * edge; i++) {
         const struct place place = place_of(work->layout, x + i / (edge * edge), y + i / edge % edge, z + i % edge);
         const uint64_t word = work->layout->occupied[place.node * SWARF_NODE_WORDS + (place.slot >> 6)];
@@ -69,8 +91,25 @@ static void remove_cube(const struct cut_work *work, int32_t x, int32_t y, int32
     }
 }
 
-static swarf_status cut_leaf(const struct cut_work *work, const swarf_column *column, const int32_t *list, size_t count,
-                             int32_t x, int32_t y, int32_t z)
+/* Beside edges distances run short, and the more so the farther away: voxels farther from the surface than the first
+ * number tell of nothing shallower than the second (both in voxels). */
+static const float touch_near = 0.75f, touch_deep = 1.3f;
+
+/* What a cut of the leaf would raise its values by: where -sweep exceeds the stock the two overlap, for the distances
+ * to two bodies that are apart add up to at least the gap between them. */
+static void touch_leaf(const struct cut_work *work, struct touch *touch, const float *before, const float *after,
+                       const int32_t corner[3])
+{
+    for (int i = 0; i < SWARF_LEAF_SIZE; i++) {
+        const float own = before ? before[i] : -work->layout->background, depth = after[i] - own;
+        const float voxel = (float)work->layout->voxel;
+        if (fabsf(own) > touch_near * voxel && depth < touch_deep * voxel) continue;
+        see_touch(touch, depth, corner[0] + (i >> 6), corner[1] + (i >> 3 & 7), corner[2] + (i & 7));
+    }
+}
+
+static swarf_status cut_leaf(const struct cut_work *work, struct touch *touch, const swarf_column *column,
+                             const int32_t *list, size_t count, int32_t x, int32_t y, int32_t z)
 {
     const swarf_tree_layout *layout = work->layout;
     const struct place place = place_of(layout, x, y, z);
@@ -86,7 +125,21 @@ static swarf_status cut_leaf(const struct cut_work *work, const swarf_column *co
         cut.solid = !(work->stock->untouched && swarf_block_reaches(work->stock, corner));
         if (!cut.solid) swarf_block_fill(work->stock, corner, fresh, cut.mask, &cut.least);
     }
+    _Alignas(64) float before[SWARF_LEAF_SIZE];
+    if (touch) { /* on a copy */
+        if (touch->depth > work->enough) {
+            __atomic_store_n(work->found, 1, __ATOMIC_RELAXED);
+            return SWARF_OK;
+        }
+        if (!cut.solid) memcpy(before, cut.values, sizeof before);
+        if (stored) memcpy(fresh, stored, sizeof fresh);
+        cut.values = fresh;
+    }
     if (!work->kernel->cut(work->body, column, list, count, &cut)) return SWARF_OK;
+    if (touch) {
+        touch_leaf(work, touch, cut.solid ? NULL : before, fresh, corner);
+        return SWARF_OK;
+    }
     if (cut.least >= SWARF_LEAF_DROP * cut.voxel) {
         swarf_tree_tile(work->stock->tree, place.node, place.slot, 0);
     } else if (stored) {
@@ -106,10 +159,10 @@ static swarf_block block_of(const swarf_column *column, const int32_t at[3], int
 }
 
 /* A cube of `edge` leaves at a place in leaves, with the tracks that concern it. */
-static swarf_status cut_cube(const struct cut_work *work, const swarf_column *column, const int32_t *list, size_t count,
-                             const int32_t at[3], int edge)
+static swarf_status cut_cube(const struct cut_work *work, struct touch *touch, const swarf_column *column,
+                             const int32_t *list, size_t count, const int32_t at[3], int edge)
 {
-    if (edge == 1) return cut_leaf(work, column, list, count, at[0], at[1], at[2]);
+    if (edge == 1) return cut_leaf(work, touch, column, list, count, at[0], at[1], at[2]);
     const int next = edge / 2;
     int32_t *const *kept = &column->list[edge == COLUMN_LEAVES ? LIST_PARTS : LIST_LEAVES];
     int32_t places[BLOCKS_AT_ONCE][3];
@@ -124,14 +177,15 @@ static swarf_status cut_cube(const struct cut_work *work, const swarf_column *co
     const unsigned covered = work->kernel->cull(work->body, column, list, count, blocks, used, kept, left);
     for (size_t i = 0; i < used; i++) {
         if (covered >> i & 1)
-            remove_cube(work, places[i][0], places[i][1], places[i][2], next);
+            remove_cube(work, touch, places[i][0], places[i][1], places[i][2], next);
         else if (left[i])
-            SWARF_TRY(cut_cube(work, column, kept[i], left[i], places[i], next));
+            SWARF_TRY(cut_cube(work, touch, column, kept[i], left[i], places[i], next));
     }
     return SWARF_OK;
 }
 
-static swarf_status cut_column_with(const struct cut_work *work, swarf_column *column, int32_t number)
+static swarf_status cut_column_with(const struct cut_work *work, swarf_column *column, int32_t number,
+                                    struct touch *touch)
 {
     const int32_t x = number / work->columns_y, y = number % work->columns_y;
     const int32_t *numbers = work->numbers + work->starts[number];
@@ -153,9 +207,9 @@ static swarf_status cut_column_with(const struct cut_work *work, swarf_column *c
         int32_t *kept = column->list[LIST_CUBE];
         size_t left = 0;
         if (work->kernel->cull(work->body, column, column->list[LIST_ALL], count, &block, 1, &kept, &left))
-            remove_cube(work, at[0], at[1], at[2], COLUMN_LEAVES);
+            remove_cube(work, touch, at[0], at[1], at[2], COLUMN_LEAVES);
         else if (left)
-            SWARF_TRY(cut_cube(work, column, kept, left, at, COLUMN_LEAVES));
+            SWARF_TRY(cut_cube(work, touch, column, kept, left, at, COLUMN_LEAVES));
     }
     return SWARF_OK;
 }
@@ -166,9 +220,11 @@ static swarf_status cut_column(void *context, size_t index)
     const int32_t number = work->columns[index];
     /* the number of threads may have been raised since the scratch was made */
     const int slot = swarf_parallel_slot();
-    if (slot < work->scratch_count) return cut_column_with(work, &work->scratch[slot], number);
+    if (work->found && __atomic_load_n(work->found, __ATOMIC_RELAXED)) return SWARF_OK;
+    struct touch *touch = work->touches ? &work->touches[index] : NULL;
+    if (slot < work->scratch_count) return cut_column_with(work, &work->scratch[slot], number, touch);
     swarf_column own = {.room = 0};
-    const swarf_status status = cut_column_with(work, &own, number);
+    const swarf_status status = cut_column_with(work, &own, number, touch);
     swarf_column_free(&own);
     return status;
 }
@@ -312,9 +368,10 @@ static void keep_scratch(struct scratch *scratch)
     free_scratch(__atomic_exchange_n(&kept_scratch, scratch, __ATOMIC_ACQ_REL));
 }
 
-/* Cut the first tracks of a list as one batch; *done: how many. */
+/* Cut the first tracks of a list as one batch, or with `deepest` only see how deep they go; *done: how many. */
 static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,
-                              const swarf_progress *progress, double from, double to, size_t *done)
+                              const swarf_progress *progress, double from, double to, struct touch *deepest,
+                              float enough, size_t *done)
 {
     const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     struct bins bins = {0};
@@ -333,8 +390,20 @@ static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const 
                                 bins.numbers,
                                 layout->count[1] * NODE_COLUMNS,
                                 scratch->columns,
-                                scratch->count};
-        status = swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, from + (to - from) * share);
+                                scratch->count,
+                                NULL,
+                                enough,
+                                NULL};
+        int found = 0;
+        if (deepest) work.found = &found;
+        if (deepest && !(work.touches = calloc(bins.column_count + 1, sizeof *work.touches)))
+            status = swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
+        if (status == SWARF_OK)
+            status =
+                swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, from + (to - from) * share);
+        for (size_t i = 0; deepest && status == SWARF_OK && i < bins.column_count; i++)
+            if (work.touches[i].depth > deepest->depth) *deepest = work.touches[i];
+        free(work.touches);
     }
     keep_scratch(scratch);
     free(bins.starts);
@@ -352,7 +421,7 @@ static swarf_status cut_tracks(swarf_stock *stock, const swarf_body *body, const
     for (size_t first = 0, done = 0; first < list->count; first += done) {
         const double at = from + (to - from) * (double)first / (double)list->count;
         SWARF_TRY(cut_batch(stock, body, list->tracks + first, list->count - first,
-                            progress && progress->fn ? &patient : NULL, at, to, &done));
+                            progress && progress->fn ? &patient : NULL, at, to, NULL, 0, &done));
         if (deferred.cancelled) return swarf_fail(SWARF_ERROR_CANCELLED, "cancelled");
     }
     return swarf_progress_report(progress, to);
@@ -371,6 +440,26 @@ swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const sw
     if (status == SWARF_OK) status = cut_tracks(stock, body, &list, progress, from, to);
     free(list.tracks);
     return status;
+}
+
+swarf_status swarf_cut_touch(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
+                             double enough, double *depth, double point[3])
+{
+    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
+    struct touch deepest = {0};
+    swarf_track_list list = {0};
+    swarf_status status = SWARF_OK;
+    for (size_t i = 0; i < count && status == SWARF_OK; i++)
+        status = swarf_track_append(&list, &paths[i], layout->origin, layout->voxel);
+    for (size_t first = 0, done = 0;
+         first < list.count && status == SWARF_OK && body->component_count && !(deepest.depth > enough); first += done)
+        status =
+            cut_batch(stock, body, list.tracks + first, list.count - first, NULL, 0, 1, &deepest, (float)enough, &done);
+    free(list.tracks);
+    if (status != SWARF_OK) return status;
+    *depth = deepest.depth;
+    for (int k = 0; k < 3; k++) point[k] = layout->origin[k] + layout->voxel * deepest.ijk[k];
+    return SWARF_OK;
 }
 
 swarf_status swarf_stock_cut(swarf_stock *stock, const swarf_cutter *cutter, const swarf_path *paths, size_t count,

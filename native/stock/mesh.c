@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Closed triangles -> level set, from the exact distance to them. */
+#include "stock/mesh.h"
+
 #include "base/parallel.h"
 #include "base/status.h"
 #include "solid/field.h"
@@ -79,7 +81,7 @@ static int is_box(const swarf_solid *solid)
 }
 
 static swarf_status create_tree(const swarf_solid *solid, const swarf_stock_options *options,
-                                const swarf_progress *progress, swarf_tree **out)
+                                const swarf_progress *progress, double from, double to, swarf_tree **out)
 {
     struct work work = {.tree = NULL};
     int32_t count[3];
@@ -89,7 +91,7 @@ static swarf_status create_tree(const swarf_solid *solid, const swarf_stock_opti
     SWARF_TRY(swarf_tree_create(options->voxel_mm, work.field.origin, count, &work.tree));
     work.layout = swarf_tree_get_layout(work.tree);
     const swarf_status status =
-        swarf_parallel_for(swarf_layout_nodes(work.layout) * COLUMNS_PER_NODE, fill_column, &work, progress, 0.3, 1);
+        swarf_parallel_for(swarf_layout_nodes(work.layout) * COLUMNS_PER_NODE, fill_column, &work, progress, from, to);
     if (status != SWARF_OK)
         swarf_tree_destroy(work.tree);
     else
@@ -97,20 +99,22 @@ static swarf_status create_tree(const swarf_solid *solid, const swarf_stock_opti
     return status;
 }
 
+swarf_status swarf_stock_create_solid(const swarf_solid *solid, const swarf_stock_options *options,
+                                      const swarf_progress *progress, double from, double to, swarf_stock **out)
+{
+    swarf_tree *tree = NULL;
+    if (is_box(solid)) return swarf_stock_create_box(&solid->facts.box, options, out); /* exact, and at once */
+    SWARF_TRY(create_tree(solid, options, progress, from, to, &tree));
+    return swarf_stock_wrap(tree, out);
+}
+
 swarf_status swarf_stock_create_mesh(const swarf_triangles *triangles, const swarf_stock_options *options,
                                      const swarf_progress *progress, swarf_stock **out)
 {
     SWARF_REQUIRE(triangles && options && out, "stock: triangles, options or output missing");
     swarf_solid *solid;
-    swarf_tree *tree = NULL;
     SWARF_TRY(swarf_solid_make(triangles, 0, progress, 0, 0.3, &solid));
-    swarf_status status;
-    if (is_box(solid)) { /* exact, and at once */
-        status = swarf_stock_create_box(&solid->facts.box, options, out);
-    } else {
-        status = create_tree(solid, options, progress, &tree);
-        if (status == SWARF_OK) status = swarf_stock_wrap(tree, out);
-    }
+    const swarf_status status = swarf_stock_create_solid(solid, options, progress, 0.3, 1, out);
     swarf_solid_release(solid);
     return status;
 }

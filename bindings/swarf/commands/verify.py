@@ -38,6 +38,10 @@ def add(subparsers: Any) -> None:
     command.add_argument("--allowance", metavar="MM", type=float, default=0.0, help="material meant to be left")
     command.add_argument("--complete", action="store_true",
                          help="material left where no move went is an error, not a warning")
+    command.add_argument("--fixture", metavar="FILE", action="append", default=[],
+                         help="a mesh that nothing may touch: clamps, the vice (repeatable)")
+    command.add_argument("--clearance", metavar="MM", type=float, default=0.0,
+                         help="warn where the holder comes nearer to the stock")
     command.add_argument("--job", metavar="NAME", help="the job in a .FCStd file, if it has several")
     command.add_argument("--stock", metavar="SPEC", help=specs.STOCK_HELP)
     command.add_argument("--tool", metavar="N=SPEC", action="append", default=[],
@@ -60,6 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
         if os.path.splitext(path)[1].lower() not in REPORT_SUFFIXES:
             raise ValueError(f"{path}: unknown suffix; a report is {' or '.join(REPORT_SUFFIXES)}")
     check_outputs(arguments.report, arguments.input)
+    fixtures = [read_design(path) for path in arguments.fixture]
     design = None if arguments.design is None else read_design(arguments.design)
 
     with Bar() as bar:
@@ -76,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
         done = verify(
             job, design, tolerance=arguments.tolerance, excess=arguments.excess, gouge=arguments.gouge,
             allowance=arguments.allowance, complete=arguments.complete, voxel=arguments.voxel,
-            resolution=arguments.resolution, progress=bar)
+            resolution=arguments.resolution, fixtures=fixtures, clearance=arguments.clearance, progress=bar)
         made = report.make_verification(done, arguments.input, seconds_read)
         for path in arguments.report:
             if os.path.splitext(path)[1].lower() == ".html":

@@ -4,6 +4,7 @@
 #define SWARF_H
 
 #include "base.h"
+#include "check.h"
 #include "compare.h"
 #include "cutter.h"
 #include "gcode.h"

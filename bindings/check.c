@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Stock.check(): what a program does that it must not, in time order. */
+#include "native.h"
+
+static const char *const severities[] = {"note", "warning", "error"};
+static const char *const parts[] = {"flutes", "shank", "holder"};
+
+static PyStructSequence_Field check_fields[] = {
+    {"severity", "\"note\", \"warning\" or \"error\"."},
+    {"kind", "\"rapid\", \"start\", \"shank\", \"holder\", \"depth\", \"near\", \"fixture\", \"design\", \"spindle\", "
+             "\"feed\", \"plunge\", \"travel\" or \"tool\"."},
+    {"part", "What touches: \"flutes\", \"shank\" or \"holder\"."},
+    {"operation", "Index of the operation."},
+    {"move", "Number of the move, from 0."},
+    {"line", "Line of the source, from 1; 0: unknown."},
+    {"tool", "Tool number."},
+    {"t", "Where on the move it begins, 0 .. 1."},
+    {"tip", "Place of the tool then, mm."},
+    {"point", "A place of the deepest contact of the whole move, mm."},
+    {"depth", "How deep that is, mm; no more than three voxels are told."},
+    {"text", "What was found."},
+    {NULL, NULL},
+};
+
+PyStructSequence_Desc check_desc = {
+    .name = "swarf.CheckFinding",
+    .doc = "Something that Stock.check() found.",
+    .fields = check_fields,
+    .n_in_sequence = 12,
+};
+
+static PyObject *finding_to_python(module_state *state, const swarf_check_finding *f)
+{
+    PyObject *items[] = {
+        PyUnicode_FromString(severities[f->severity]),
+        PyUnicode_FromString(swarf_check_name((swarf_check_kind)f->kind)),
+        PyUnicode_FromString(parts[f->part]),
+        PyLong_FromLong(f->operation),
+        PyLong_FromSize_t(f->move),
+        PyLong_FromUnsignedLong(f->line),
+        PyLong_FromLong(f->tool),
+        PyFloat_FromDouble(f->t),
+        Py_BuildValue("(ddd)", f->tip[0], f->tip[1], f->tip[2]),
+        Py_BuildValue("(ddd)", f->point[0], f->point[1], f->point[2]),
+        PyFloat_FromDouble(f->depth_mm),
+        PyUnicode_DecodeUTF8(f->text, (Py_ssize_t)strnlen(f->text, sizeof f->text), "replace"),
+    };
+    return make_sequence(state->check, items, 12);
+}
+
+static PyObject *findings_to_python(module_state *state, const swarf_check *check)
+{
+    size_t count;
+    const swarf_check_finding *findings = swarf_check_findings(check, &count);
+    PyObject *result = PyTuple_New((Py_ssize_t)count);
+    for (size_t i = 0; result && i < count; i++) {
+        PyObject *finding = finding_to_python(state, &findings[i]);
+        if (!finding || PyTuple_SetItem(result, (Py_ssize_t)i, finding) < 0) Py_CLEAR(result);
+    }
+    return result;
+}
+
+/** What the lists of Python hold, for the library. */
+struct lists {
+    PyObject *fixtures; /* a tuple of Solids, kept alive */
+    const swarf_solid **solids;
+    int32_t *no_plunge;
+};
+
+static void lists_free(struct lists *lists)
+{
+    Py_CLEAR(lists->fixtures);
+    PyMem_Free(lists->solids);
+    PyMem_Free(lists->no_plunge);
+}
+
+static int lists_read(module_state *state, PyObject *fixtures, PyObject *no_plunge, struct lists *out,
+                      swarf_check_options *options)
+{
+    PyObject *numbers = NULL;
+    out->fixtures = PySequence_Tuple(fixtures);
+    numbers = out->fixtures ? PySequence_Tuple(no_plunge) : NULL;
+    if (!numbers) return -1;
+    const Py_ssize_t solid_count = PyTuple_Size(out->fixtures), number_count = PyTuple_Size(numbers);
+    out->solids = PyMem_Calloc((size_t)solid_count + 1, sizeof *out->solids);
+    out->no_plunge = PyMem_Calloc((size_t)number_count + 1, sizeof *out->no_plunge);
+    if (!out->solids || !out->no_plunge) PyErr_NoMemory();
+    for (Py_ssize_t i = 0; i < solid_count && !PyErr_Occurred(); i++) {
+        PyObject *fixture = PyTuple_GetItem(out->fixtures, i);
+        if (PyObject_TypeCheck(fixture, state->solid))
+            out->solids[i] = ((solid_object *)fixture)->handle;
+        else
+            PyErr_Format(PyExc_TypeError, "fixtures: item %zd is no Solid", i);
+    }
+    for (Py_ssize_t i = 0; i < number_count && !PyErr_Occurred(); i++)
+        out->no_plunge[i] = (int32_t)PyLong_AsLong(PyTuple_GetItem(numbers, i));
+    Py_DECREF(numbers);
+    options->fixtures = out->solids;
+    options->fixture_count = (size_t)solid_count;
+    options->no_plunge = out->no_plunge;
+    options->no_plunge_count = (size_t)number_count;
+    return PyErr_Occurred() ? -1 : 0;
+}
+
+const char stock_check_doc[] =
+    "check($self, program, tools, *, fixtures=(), design=None, tolerance=0.05, clearance=0.0, travel=None, "
+    "no_plunge=(), stop=False, progress=None)\n--\n\n"
+    "Play a program as simulate() does, and look at each move before it is cut -> tuple of CheckFinding in the order "
+    "of\n"
+    "the moves. `fixtures` are Solids that nothing may touch, `design` a Solid that shank and holder may not touch "
+    "and\n"
+    "flutes by no more than `tolerance`; `clearance` (mm) is wanted between holder and stock; `travel` is a box that "
+    "the\n"
+    "tip has to stay in; `no_plunge` are tools that cannot plunge; `stop` ends with the first error.";
+
+PyObject *stock_check(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"program", "tools",     "fixtures", "design",   "tolerance", "clearance",
+                            "travel",  "no_plunge", "stop",     "progress", NULL};
+    module_state *state = state_of(self);
+    swarf_check_options options = swarf_check_options_default();
+    PyObject *program_argument, *dict, *fixtures = NULL, *design = Py_None, *travel = Py_None, *no_plunge = NULL;
+    PyObject *progress = NULL;
+    int stop = 0;
+    swarf_tool *tools;
+    size_t tool_count;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!|$OOddOOpO:check", names, state->program, &program_argument,
+                                     &PyDict_Type, &dict, &fixtures, &design, &options.design_mm, &options.clearance_mm,
+                                     &travel, &no_plunge, &stop, &progress))
+        return NULL;
+    options.stop_on_first = stop;
+    if (travel != Py_None && camera_box(travel, &options.travel)) return NULL;
+    if (design != Py_None && !PyObject_TypeCheck(design, state->solid))
+        return PyErr_Format(PyExc_TypeError, "design: a Solid is wanted");
+    if (design != Py_None) options.design = ((solid_object *)design)->handle;
+    struct lists lists = {0};
+    PyObject *none = PyTuple_New(0);
+    const int wrong =
+        !none || lists_read(state, fixtures ? fixtures : none, no_plunge ? no_plunge : none, &lists, &options);
+    Py_XDECREF(none);
+    if (wrong || tools_read(state, dict, &tools, &tool_count)) {
+        lists_free(&lists);
+        return NULL;
+    }
+    program_object *program = (program_object *)program_argument;
+    swarf_check *check = NULL;
+    native_call call;
+    program->readers++;
+    int failed = call_begin(&call, progress);
+    if (!failed) {
+        const swarf_status status = swarf_stock_check(((stock_object *)self)->handle, program->handle, 0,
+                                                      swarf_program_move_count(program->handle), tools, tool_count,
+                                                      &options, &call.progress, &check);
+        failed = call_end(&call, state, status);
+    }
+    program->readers--;
+    tools_free(tools, tool_count);
+    lists_free(&lists);
+    PyObject *result = failed ? NULL : findings_to_python(state, check);
+    swarf_check_destroy(check);
+    return result;
+}

@@ -1,0 +1,522 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Playing a program with an eye on it. The stock only shrinks: what a batch of moves does not touch as the stock is
+ * before the batch, none of its moves touches later. So each test asks once for a whole batch, and only where it
+ * answers yes the batch is halved, down to the move. Fixtures and design are stocks of their own that are never cut. */
+#include "swarf/check.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/status.h"
+#include "stock/cut.h"
+#include "stock/mesh.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Voxels of depth from which on a contact counts: against the stock, which is made of the same distances, and against
+ * triangles, beside whose concave edges the distance to a tool runs short by up to 0.3. */
+static const double stock_depth = 0.06, solid_depth = 0.35;
+
+/* The first instant is bisected to this share of a voxel, and the tool of a cutter without shank ends this far up, mm.
+ */
+static const double instant = 0.02, endless = 500;
+
+/* Findings of one kind in one operation, and moves in a batch. */
+enum { MOST_FINDINGS = 20, MOST_AT_ONCE = 1 << 16, MOST_TARGETS = 64 };
+
+struct swarf_check {
+    swarf_check_finding *findings;
+    size_t count, room;
+};
+
+/* A part of a tool, ready to be swept; NULL where the tool has none. */
+struct tool {
+    const swarf_cutter *cutter;
+    swarf_body *flutes, *shank, *holder, *wide_holder, *above; /* above: beyond the flutes, where nothing else is */
+    int ready;
+};
+
+/* What the moves of a batch are tested for. */
+struct test {
+    swarf_check_kind kind;
+    swarf_part_kind part;
+    const swarf_body *body;
+    swarf_stock *target;
+    double depth; /* mm from which on it counts */
+    int rapids, feeds;
+};
+
+enum { MOST_TESTS = 6 + 4 * MOST_TARGETS };
+
+struct player {
+    swarf_stock *stock;
+    swarf_stock *targets[MOST_TARGETS]; /* the fixtures, then the design if there is one */
+    size_t target_count;
+    const swarf_program *program;
+    const swarf_tool *tools;
+    size_t tool_count;
+    struct tool *prepared; /* per tool */
+    const swarf_check_options *options;
+    const swarf_progress *progress;
+    swarf_check *result;
+    size_t first, count;
+    swarf_path *paths;
+    size_t path_room;
+    int found[SWARF_CHECK_COUNT]; /* in this operation */
+    int stopped;
+    int known; /* 1 once a move of this tool has been seen */
+};
+
+static const char *const names[SWARF_CHECK_COUNT] = {"rapid",  "start",   "shank",  "holder",  "depth",
+                                                     "near",   "fixture", "design", "spindle", "feed",
+                                                     "plunge", "travel",  "tool"};
+
+const char *swarf_check_name(swarf_check_kind kind)
+{
+    return (unsigned)kind < SWARF_CHECK_COUNT ? names[kind] : "";
+}
+
+swarf_check_options swarf_check_options_default(void)
+{
+    return (swarf_check_options){.size = sizeof(swarf_check_options),
+                                 .design_mm = 0.05,
+                                 .travel = {{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}}};
+}
+
+void swarf_check_destroy(swarf_check *check)
+{
+    if (check) free(check->findings);
+    free(check);
+}
+
+const swarf_check_finding *swarf_check_findings(const swarf_check *check, size_t *count)
+{
+    *count = check ? check->count : 0;
+    return check ? check->findings : NULL;
+}
+
+/* ---- tools ---- */
+
+/* A cutter of one holder: this cutter's, wider and lower by the clearance. */
+static swarf_status make_wide(const swarf_cutter *cutter, double clearance, swarf_cutter **out)
+{
+    swarf_cutter_part part = {.nodes = NULL};
+    double low, high;
+    swarf_cutter_extent(cutter, SWARF_PART_HOLDER, &low, &high);
+    for (size_t i = 0; i < swarf_cutter_part_count(cutter) && !part.nodes; i++) {
+        SWARF_TRY(swarf_cutter_part_get(cutter, i, &part));
+        if (part.kind != SWARF_PART_HOLDER) part.nodes = NULL;
+    }
+    if (!part.nodes) return SWARF_OK;
+    swarf_profile_node *nodes = malloc(part.node_count * sizeof *nodes);
+    if (!nodes) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
+    for (size_t i = 0; i < part.node_count; i++) {
+        nodes[i] = part.nodes[i];
+        if (nodes[i].r > 0) nodes[i].r += clearance;
+        if (nodes[i].z <= low) nodes[i].z -= clearance;
+    }
+    part.nodes = nodes;
+    const swarf_status status = swarf_cutter_create(&part, 1, out);
+    free(nodes);
+    return status;
+}
+
+/* A cylinder as wide as the flutes from their upper end on. */
+static swarf_status make_above(const swarf_cutter *cutter, swarf_cutter **out)
+{
+    double low, high;
+    swarf_cutter_extent(cutter, SWARF_PART_FLUTES, &low, &high);
+    const double radius = swarf_cutter_radius(cutter, SWARF_PART_FLUTES);
+    const swarf_profile_node nodes[4] = {
+        {0, high, 0}, {radius, high, 0}, {radius, high + endless, 0}, {0, high + endless, 0}};
+    const swarf_cutter_part part = {SWARF_PART_SHANK, nodes, 4};
+    return swarf_cutter_create(&part, 1, out);
+}
+
+static swarf_status prepare(const struct player *p, const swarf_cutter *cutter, struct tool *tool)
+{
+    const double voxel = swarf_stock_voxel(p->stock);
+    tool->cutter = cutter;
+    tool->ready = 1;
+    SWARF_TRY(swarf_body_create(cutter, SWARF_PART_FLUTES, voxel, &tool->flutes));
+    SWARF_TRY(swarf_body_create(cutter, SWARF_PART_SHANK, voxel, &tool->shank));
+    SWARF_TRY(swarf_body_create(cutter, SWARF_PART_HOLDER, voxel, &tool->holder));
+    swarf_cutter *made = NULL;
+    swarf_status status = SWARF_OK;
+    if (tool->holder->component_count && p->options->clearance_mm > 0) {
+        SWARF_TRY(make_wide(cutter, p->options->clearance_mm, &made));
+        if (made) status = swarf_body_create(made, SWARF_PART_HOLDER, voxel, &tool->wide_holder);
+    } else if (tool->flutes->component_count && !tool->shank->component_count && !tool->holder->component_count) {
+        SWARF_TRY(make_above(cutter, &made));
+        status = swarf_body_create(made, SWARF_PART_SHANK, voxel, &tool->above);
+    }
+    swarf_cutter_release(made);
+    return status;
+}
+
+static void free_tool(struct tool *tool)
+{
+    swarf_body_destroy(tool->flutes);
+    swarf_body_destroy(tool->shank);
+    swarf_body_destroy(tool->holder);
+    swarf_body_destroy(tool->wide_holder);
+    swarf_body_destroy(tool->above);
+}
+
+static swarf_status find_tool(struct player *p, int32_t number, struct tool **out)
+{
+    *out = NULL;
+    for (size_t i = 0; i < p->tool_count; i++) {
+        if (p->tools[i].number != number || !p->tools[i].cutter) continue;
+        if (!p->prepared[i].ready) SWARF_TRY(prepare(p, p->tools[i].cutter, &p->prepared[i]));
+        *out = &p->prepared[i];
+        return SWARF_OK;
+    }
+    return SWARF_OK;
+}
+
+/* ---- findings ---- */
+
+static swarf_status report(struct player *p, size_t move, swarf_check_finding finding)
+{
+    if (p->stopped || p->found[finding.kind]++ >= MOST_FINDINGS) return SWARF_OK;
+    const swarf_move *m = &swarf_program_moves(p->program)[move];
+    const swarf_section *section = &swarf_program_sections(p->program)[swarf_move_get_section(m)];
+    swarf_check *result = p->result;
+    SWARF_TRY(
+        swarf_array_reserve((void **)&result->findings, &result->room, result->count + 1, sizeof *result->findings));
+    finding.move = move;
+    finding.line = m->line;
+    finding.tool = section->tool;
+    finding.operation = section->operation;
+    result->findings[result->count++] = finding;
+    if (p->options->stop_on_first && finding.severity == SWARF_ERROR) p->stopped = 1;
+    return SWARF_OK;
+}
+
+static void path_part(const swarf_path *path, double t, swarf_path *out)
+{
+    *out = *path;
+    swarf_path_point(path, t, out->end);
+    out->arc.angle_rad = path->arc.angle_rad * t;
+}
+
+/* Earliest t at which a move touches as its test says. The part of the path up to t touches from there on. */
+static swarf_status first_contact(const struct test *test, const swarf_path *path, double voxel, double *t)
+{
+    double lo = 0, hi = 1, depth, point[3];
+    const double length = swarf_path_length(path), step = length > 0 ? instant * voxel / length : 1;
+    swarf_path part;
+    path_part(path, 0, &part);
+    SWARF_TRY(swarf_cut_touch(test->target, test->body, &part, 1, test->depth, &depth, point));
+    if (depth > test->depth) hi = 0;
+    while (hi - lo > step) {
+        const double middle = 0.5 * (lo + hi);
+        path_part(path, middle, &part);
+        SWARF_TRY(swarf_cut_touch(test->target, test->body, &part, 1, test->depth, &depth, point));
+        if (depth > test->depth)
+            hi = middle;
+        else
+            lo = middle;
+    }
+    *t = hi;
+    return SWARF_OK;
+}
+
+static const char *part_name(swarf_part_kind part)
+{
+    return part == SWARF_PART_FLUTES ? "flutes" : part == SWARF_PART_SHANK ? "shank" : "holder";
+}
+
+static void describe(const struct player *p, const struct test *test, swarf_check_finding *f)
+{
+    const char *what = part_name(test->part);
+    const size_t size = sizeof f->text;
+    switch (f->kind) {
+    case SWARF_CHECK_RAPID: snprintf(f->text, size, "rapid through material, %.3g mm deep", f->depth_mm); break;
+    case SWARF_CHECK_START: snprintf(f->text, size, "the tool starts inside the stock"); break;
+    case SWARF_CHECK_DEPTH: snprintf(f->text, size, "cuts deeper than the flutes are long"); break;
+    case SWARF_CHECK_NEAR:
+        snprintf(f->text, size, "holder closer to the stock than %g mm", p->options->clearance_mm);
+        break;
+    case SWARF_CHECK_FIXTURE: snprintf(f->text, size, "%s hits a fixture, %.3g mm deep", what, f->depth_mm); break;
+    case SWARF_CHECK_DESIGN:
+        snprintf(f->text, size,
+                 test->part == SWARF_PART_FLUTES ? "%s cut into the design, %.3g mm deep"
+                                                 : "%s hits the design, %.3g mm deep",
+                 what, f->depth_mm);
+        break;
+    default: snprintf(f->text, size, "%s hits the stock, %.3g mm deep", what, f->depth_mm);
+    }
+}
+
+static swarf_status report_contact(struct player *p, const struct test *test, size_t move, const swarf_path *path)
+{
+    swarf_check_finding f = {.severity = SWARF_ERROR, .kind = (int32_t)test->kind, .part = (int32_t)test->part};
+    SWARF_TRY(swarf_cut_touch(test->target, test->body, path, 1, INFINITY, &f.depth_mm, f.point));
+    if (!(f.depth_mm > test->depth)) return SWARF_OK;
+    SWARF_TRY(first_contact(test, path, swarf_stock_voxel(p->stock), &f.t));
+    swarf_path_point(path, f.t, f.tip);
+    if (f.kind == SWARF_CHECK_NEAR) {
+        if (p->result->count && p->result->findings[p->result->count - 1].move == move &&
+            p->result->findings[p->result->count - 1].kind == SWARF_CHECK_HOLDER)
+            return SWARF_OK; /* it does more than that */
+        f.severity = SWARF_WARNING;
+    }
+    if (f.kind == SWARF_CHECK_RAPID && f.t == 0 && !p->known) f.kind = SWARF_CHECK_START;
+    describe(p, test, &f);
+    return report(p, move, f);
+}
+
+/* ---- what the words of a move tell by themselves ---- */
+
+static swarf_status check_words(struct player *p, size_t move, const swarf_path *path, const struct tool *tool)
+{
+    const swarf_move *m = &swarf_program_moves(p->program)[move];
+    const swarf_section *section = &swarf_program_sections(p->program)[swarf_move_get_section(m)];
+    swarf_check_finding f = {.severity = SWARF_ERROR};
+    memcpy(f.tip, path->end, sizeof f.tip);
+    for (int k = 0; k < 3; k++) {
+        const swarf_box *travel = &p->options->travel;
+        if (!(path->end[k] < travel->lo[k] || path->end[k] > travel->hi[k])) continue;
+        f.kind = SWARF_CHECK_TRAVEL;
+        f.t = 1;
+        snprintf(f.text, sizeof f.text, "%c%.6g is beyond the travel of %.6g .. %.6g mm", "XYZ"[k], path -> end[k],
+                 travel -> lo[k], travel -> hi[k]);
+        SWARF_TRY(report(p, move, f));
+    }
+    f.t = 0;
+    if (swarf_move_get_kind(m) != SWARF_MOVE_FEED) return SWARF_OK;
+    if (!(m->feed_mm_min > 0)) {
+        f.kind = SWARF_CHECK_FEED;
+        snprintf(f.text, sizeof f.text, "a feed move without feed");
+        SWARF_TRY(report(p, move, f));
+    }
+    if (section->spindle == SWARF_SPINDLE_CCW || section->spindle == SWARF_SPINDLE_OFF || !(section->spindle_rpm > 0)) {
+        f.kind = SWARF_CHECK_SPINDLE;
+        f.severity = section->spindle == SWARF_SPINDLE_CCW ? SWARF_WARNING : SWARF_ERROR;
+        snprintf(f.text, sizeof f.text,
+                 section->spindle == SWARF_SPINDLE_CCW ? "cuts with the spindle turning backwards (M4)"
+                                                       : "cuts with the spindle stopped");
+        SWARF_TRY(report(p, move, f));
+    }
+    const double down = path->start[2] - path->end[2];
+    const double along = hypot(path->end[0] - path->start[0], path->end[1] - path->start[1]);
+    for (size_t i = 0; tool && i < p->options->no_plunge_count && !path->is_arc; i++) {
+        if (p->options->no_plunge[i] != section->tool || !(down > 0) || along > 0.02 * down) continue;
+        double depth, point[3]; /* through air is no plunge */
+        SWARF_TRY(
+            swarf_cut_touch(p->stock, tool->flutes, path, 1, stock_depth * swarf_stock_voxel(p->stock), &depth, point));
+        if (!(depth > stock_depth * swarf_stock_voxel(p->stock))) continue;
+        f.kind = SWARF_CHECK_PLUNGE;
+        f.severity = SWARF_ERROR;
+        snprintf(f.text, sizeof f.text, "plunges %.3g mm with a tool that cannot", down);
+        SWARF_TRY(report(p, move, f));
+    }
+    return SWARF_OK;
+}
+
+/* ---- playing ---- */
+
+static size_t make_tests(const struct player *p, const struct tool *tool, struct test *tests)
+{
+    const double voxel = swarf_stock_voxel(p->stock), own = stock_depth * voxel, other = solid_depth * voxel;
+    size_t count = 0;
+    tests[count++] = (struct test){SWARF_CHECK_RAPID, SWARF_PART_FLUTES, tool->flutes, p->stock, own, 1, 0};
+    tests[count++] = (struct test){SWARF_CHECK_SHANK, SWARF_PART_SHANK, tool->shank, p->stock, own, 1, 1};
+    tests[count++] = (struct test){SWARF_CHECK_HOLDER, SWARF_PART_HOLDER, tool->holder, p->stock, own, 1, 1};
+    tests[count++] = (struct test){SWARF_CHECK_NEAR, SWARF_PART_HOLDER, tool->wide_holder, p->stock, own, 1, 1};
+    tests[count++] = (struct test){SWARF_CHECK_DEPTH, SWARF_PART_SHANK, tool->above, p->stock, own, 1, 1};
+    for (size_t i = 0; i < p->target_count; i++) {
+        const int is_design = i >= p->options->fixture_count;
+        const swarf_check_kind kind = is_design ? SWARF_CHECK_DESIGN : SWARF_CHECK_FIXTURE;
+        tests[count++] = (struct test){
+            kind, SWARF_PART_FLUTES, tool->flutes, p->targets[i], other + (is_design ? p->options->design_mm : 0), 1,
+            1};
+        tests[count++] = (struct test){kind, SWARF_PART_SHANK, tool->shank, p->targets[i], other, 1, 1};
+        tests[count++] = (struct test){kind, SWARF_PART_HOLDER, tool->holder, p->targets[i], other, 1, 1};
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        if (tests[i].body && tests[i].body->component_count) tests[kept++] = tests[i];
+    return kept;
+}
+
+/* Paths of the moves first .. end - 1 that move; of rapids, feeds or both. */
+static swarf_status take_paths(struct player *p, size_t first, size_t end, int rapids, int feeds, size_t *count)
+{
+    const swarf_move *moves = swarf_program_moves(p->program);
+    SWARF_TRY(swarf_array_reserve((void **)&p->paths, &p->path_room, end - first, sizeof *p->paths));
+    *count = 0;
+    for (size_t i = first; i < end; i++) {
+        if (!(swarf_move_get_kind(&moves[i]) == SWARF_MOVE_RAPID ? rapids : feeds)) continue;
+        SWARF_TRY(swarf_program_path(p->program, i, &p->paths[*count]));
+        *count += p->paths[*count].has_motion != 0;
+    }
+    return SWARF_OK;
+}
+
+/* Moves first .. end - 1, of which only these tests may answer yes. */
+static swarf_status play_range(struct player *p, const struct tool *tool, size_t first, size_t end,
+                               const struct test *tests, size_t test_count)
+{
+    struct test *open = malloc((test_count + 1) * sizeof *open);
+    if (!open) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
+    size_t open_count = 0, count = 0;
+    swarf_status status = SWARF_OK;
+    for (size_t i = 0; i < test_count && status == SWARF_OK; i++) {
+        double depth = 0, point[3];
+        if (p->found[tests[i].kind] >= MOST_FINDINGS) continue;
+        status = take_paths(p, first, end, tests[i].rapids, tests[i].feeds, &count);
+        if (status == SWARF_OK && count)
+            status = swarf_cut_touch(tests[i].target, tests[i].body, p->paths, count, tests[i].depth, &depth, point);
+        if (depth > tests[i].depth) open[open_count++] = tests[i];
+    }
+    if (status == SWARF_OK && open_count && end - first > 1) {
+        const size_t middle = first + (end - first) / 2;
+        status = play_range(p, tool, first, middle, open, open_count);
+        if (status == SWARF_OK && !p->stopped) status = play_range(p, tool, middle, end, open, open_count);
+        free(open);
+        return status;
+    }
+    for (size_t i = 0; i < open_count && status == SWARF_OK; i++) {
+        swarf_path path;
+        status = swarf_program_path(p->program, first, &path);
+        if (status == SWARF_OK) status = report_contact(p, &open[i], first, &path);
+    }
+    free(open);
+    if (status == SWARF_OK) status = take_paths(p, first, end, 1, 1, &count);
+    if (count) p->known = 1;
+    if (status == SWARF_OK && count && !p->stopped)
+        status = swarf_cut_body(p->stock, tool->flutes, p->paths, count, NULL, 0, 1);
+    return status;
+}
+
+static swarf_status play_batch(struct player *p, size_t first, size_t end)
+{
+    const swarf_section *section =
+        &swarf_program_sections(p->program)[swarf_move_get_section(&swarf_program_moves(p->program)[first])];
+    struct tool *tool;
+    SWARF_TRY(find_tool(p, section->tool, &tool));
+    int moving = 0;
+    for (size_t i = first; i < end && !p->stopped; i++) {
+        swarf_path path;
+        SWARF_TRY(swarf_program_path(p->program, i, &path));
+        if (!path.has_motion) continue;
+        if (!moving++ && (!tool || !tool->flutes->component_count)) {
+            swarf_check_finding f = {.severity = SWARF_ERROR, .kind = SWARF_CHECK_TOOL};
+            snprintf(f.text, sizeof f.text, tool ? "tool T%d has no flutes" : "tool T%d is not in the tool table",
+                     (int)section->tool);
+            SWARF_TRY(report(p, i, f));
+        }
+        SWARF_TRY(check_words(p, i, &path, tool));
+    }
+    if (!tool || !moving || p->stopped) return SWARF_OK;
+    struct test tests[MOST_TESTS];
+    return play_range(p, tool, first, end, tests, make_tests(p, tool, tests));
+}
+
+static swarf_status play(struct player *p)
+{
+    const swarf_move *moves = swarf_program_moves(p->program);
+    const swarf_section *sections = swarf_program_sections(p->program);
+    const size_t last = p->first + p->count;
+    for (size_t i = p->first; i < last && !p->stopped;) {
+        const swarf_section *section = &sections[swarf_move_get_section(&moves[i])];
+        size_t end = i + 1;
+        while (end < last && end - i < MOST_AT_ONCE) {
+            const swarf_section *next = &sections[swarf_move_get_section(&moves[end])];
+            if (next->tool != section->tool || next->operation != section->operation) break;
+            end++;
+        }
+        SWARF_TRY(play_batch(p, i, end));
+        SWARF_TRY(swarf_progress_report(p->progress, (double)(end - p->first) / (double)p->count));
+        if (end < last) {
+            const swarf_section *next = &sections[swarf_move_get_section(&moves[end])];
+            if (next->operation != section->operation) memset(p->found, 0, sizeof p->found);
+            if (next->tool != section->tool) p->known = 0;
+        }
+        i = end;
+    }
+    return SWARF_OK;
+}
+
+static int compare_findings(const void *left, const void *right)
+{
+    const swarf_check_finding *l = left, *r = right;
+    if (l->move != r->move) return l->move < r->move ? -1 : 1;
+    if (l->t != r->t) return l->t < r->t ? -1 : 1;
+    return l->kind < r->kind ? -1 : l->kind > r->kind;
+}
+
+/* Fixtures and design on voxels of their own. */
+static swarf_status make_targets(struct player *p)
+{
+    const swarf_check_options *o = p->options;
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = swarf_stock_voxel(p->stock);
+    for (size_t i = 0; i < o->fixture_count + (o->design != NULL); i++) {
+        const swarf_solid *solid = i < o->fixture_count ? o->fixtures[i] : o->design;
+        SWARF_REQUIRE(solid, "check: fixture %zu is missing", i);
+        SWARF_TRY(swarf_stock_create_solid(solid, &options, p->progress, 0, 0, &p->targets[i]));
+        p->target_count++;
+        SWARF_TRY(swarf_stock_enter_write(p->targets[i]));
+    }
+    return SWARF_OK;
+}
+
+static swarf_status run(struct player *p)
+{
+    p->prepared = calloc(p->tool_count + 1, sizeof *p->prepared);
+    p->result = calloc(1, sizeof *p->result);
+    if (!p->prepared || !p->result) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
+    SWARF_TRY(make_targets(p));
+    SWARF_TRY(play(p));
+    if (p->result->count) qsort(p->result->findings, p->result->count, sizeof *p->result->findings, compare_findings);
+    return SWARF_OK;
+}
+
+swarf_status swarf_stock_check(swarf_stock *stock, const swarf_program *program, size_t first, size_t count,
+                               const swarf_tool *tools, size_t tool_count, const swarf_check_options *options,
+                               const swarf_progress *progress, swarf_check **out)
+{
+    const swarf_check_options plain = swarf_check_options_default();
+    if (!options) options = &plain;
+    SWARF_REQUIRE(stock && program && out && (tools || tool_count == 0),
+                  "check: stock, program, tools or output missing");
+    SWARF_REQUIRE(options->size == sizeof *options, "check: options of another version");
+    SWARF_REQUIRE(options->fixture_count < MOST_TARGETS, "check: %zu fixtures; %d are possible", options->fixture_count,
+                  MOST_TARGETS - 1);
+    SWARF_REQUIRE(options->fixtures || !options->fixture_count, "check: fixtures missing");
+    SWARF_REQUIRE(options->no_plunge || !options->no_plunge_count, "check: tools that cannot plunge missing");
+    SWARF_REQUIRE(isfinite(options->clearance_mm) && options->clearance_mm >= 0, "check: a clearance of %g mm",
+                  options->clearance_mm);
+    SWARF_REQUIRE(isfinite(options->design_mm) && options->design_mm >= 0, "check: %g mm into the design",
+                  options->design_mm);
+    const size_t total = swarf_program_move_count(program);
+    SWARF_REQUIRE(first <= total && count <= total - first, "check: moves %zu .. %zu of %zu", first, first + count,
+                  total);
+    struct player p = {.stock = stock,
+                       .program = program,
+                       .tools = tools,
+                       .tool_count = tool_count,
+                       .options = options,
+                       .progress = progress,
+                       .first = first,
+                       .count = count};
+    SWARF_TRY(swarf_stock_enter_write(stock));
+    const swarf_status status = run(&p);
+    for (size_t i = 0; p.prepared && i < tool_count; i++) free_tool(&p.prepared[i]);
+    for (size_t i = 0; i < MOST_TARGETS; i++) swarf_stock_destroy(p.targets[i]);
+    free(p.prepared);
+    free(p.paths);
+    swarf_stock_leave(stock);
+    if (status != SWARF_OK) {
+        swarf_check_destroy(p.result);
+        return status;
+    }
+    *out = p.result;
+    return SWARF_OK;
+}
