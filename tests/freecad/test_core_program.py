@@ -106,7 +106,7 @@ def test_full_circle_and_turns():
 
 CYCLES = {
     "G81": [("F", 0, 0, -4), ("G", 0, 0, 10)],
-    "G85": [("F", 0, 0, -4), ("F", 0, 0, 10)],
+    "G85": [("F", 0, 0, -4), ("F", 0, 0, 1), ("G", 0, 0, 10)],
     "G83": [("F", 0, 0, -1), ("G", 0, 0, 1), ("G", 0, 0, -0.746), ("F", 0, 0, -3), ("G", 0, 0, 1),
             ("G", 0, 0, -2.746), ("F", 0, 0, -4), ("G", 0, 0, 10)],
     "G73": [("F", 0, 0, -1), ("G", 0, 0, -0.746), ("F", 0, 0, -3), ("G", 0, 0, -2.746), ("F", 0, 0, -4),
@@ -240,7 +240,7 @@ def test_same_holes_as_the_gcode_reader(swarf):
     numpy = pytest.importorskip("numpy")
     text = ["G90", "G0 X0 Y0 Z20", "G98", "G81 X1 Y2 Z-4 R2 F120", "G81 X3", "G80", "G0 X9", "G99",
             "G83 X1 Y5 Z-4 R2 Q1.5 F60", "G83 Y7", "G80", "G0 Z20", "G98", "G73 X1 Y9 Z-4 R2 Q1.7 F60", "G80",
-            "G82 X1 Y8 Z-4 R2 P0.1", "G85 Y12 Z-3 R1", "G89 Y13 P0.2", "G80"]
+            "G82 X1 Y8 Z-4 R2 P0.1", "G85 Y12 Z-3 R1", "G89 Y13 Z-3 R1 P0.2", "G80"]
     commands = [Command(line.replace("F120", "F2").replace("F60", "F1")) for line in text]
     table = program.build([program.Operation("Op", commands, 1)])
     ours = native_moves(numpy, table.play(swarf.Program()))

@@ -15,8 +15,8 @@ CYCLES = ("G73", "G74", "G81", "G82", "G83", "G84", "G85", "G86", "G89")
 PECKING = ("G73", "G83")
 DWELLING = ("G74", "G82", "G84", "G86", "G89")
 
-# Boring and tapping come out at the feed, the tap's spindle reversed.
-FED_OUT = ("G74", "G84", "G85", "G89")
+# Boring and tapping come out at the feed, the tap's spindle reversed; G85 does so up to the retract height only.
+FED_OUT = ("G74", "G84", "G89")
 
 
 # A depth per peck that makes more pecks than this is a mistake, and would fill the memory.
@@ -64,4 +64,8 @@ def expand(name, z, retract, clear, peck=None, dwell=0.0):
     else:
         raise ValueError("is not a drilling cycle")
     yield from steps
+    if name == "G85":
+        yield "feed", retract
+        if clear == retract:
+            return
     yield "feed" if name in FED_OUT else "rapid", clear
