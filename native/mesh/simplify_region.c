@@ -7,8 +7,8 @@
  *   - on an edge of the surface (facets whose normals differ by more than 25 degrees), u lies on the same edge;
  *     corners and ends of edges stay;
  *   - no facet turns over against the true normal it was made with, or becomes a needle;
- *   - the greatest error of v's facets so far, plus the distance of v from its new facets, is within the limit. The sum
- *     bounds the distance to the first facets by the triangle inequality.
+ *   - the greatest error of v's facets so far, plus the distance between v's facets and the new ones, is within the
+ *     limit. The sum bounds the distance to the first facets by the triangle inequality.
  * Of several choices the one with the best worst facet is taken. The limit is raised in steps, so that what costs
  * nothing goes first.
  */
@@ -97,6 +97,22 @@ static double over_triangle(const double ap[3], const double ab[3], const double
     return away * away / square;
 }
 
+/* Squared distance between two segments (from a point along a vector) where they pass each other between their ends,
+ * else 0. */
+static double where_they_pass(const double p[3], const double along[3], const double q[3], const double across[3])
+{
+    double w[3];
+    sub(p, q, w);
+    const double a = dot(along, along), b = dot(along, across), c = dot(across, across);
+    const double d = dot(along, w), e = dot(across, w), size = a * c - b * b;
+    if (size <= 1e-9 * a * c) return 0;
+    const double s = (b * e - c * d) / size, t = (a * e - b * d) / size;
+    if (s <= 0 || s >= 1 || t <= 0 || t >= 1) return 0;
+    double away = 0;
+    for (int k = 0; k < 3; k++) away += (w[k] + s * along[k] - t * across[k]) * (w[k] + s * along[k] - t * across[k]);
+    return away;
+}
+
 static double normals_dot(const swarf_facet *a, const swarf_facet *b)
 {
     double sum = 0;
@@ -182,6 +198,34 @@ static int keeps_topology(const simplify_region *r, const ring *around, int j, u
     return 1;
 }
 
+/* Squared greatest distance between the edges to v that go and the edges to u = ring vertex j that come, where they
+ * pass each other: with v's own distance it is that between the old facets and the new. On an edge of the surface its
+ * two sides do not mix. */
+static double between_edges(const simplify_region *r, const ring *around, int j, const double *at)
+{
+    const int n = around->count;
+    const double *u = r->xyz + 3 * (size_t)around->vertex[j];
+    double most = 0, come[3], go[3];
+    int side = 0, side_of[MOST];
+    for (int step = 1; step < n; step++) {
+        const int i = (j + step) % n;
+        if (around->crease[j] && around->crease[i]) side++;
+        side_of[i] = around->crease[i] && around->crease[j] ? -1 : side;
+    }
+    for (int step = 2; step < n - 1; step++) {
+        const int k = (j + step) % n;
+        if (side_of[k] < 0) continue;
+        sub(r->xyz + 3 * (size_t)around->vertex[k], u, come);
+        for (int other = 1; other < n; other++) {
+            const int i = (j + other) % n;
+            if (i == k || side_of[i] != side_of[k]) continue;
+            sub(r->xyz + 3 * (size_t)around->vertex[i], at, go);
+            most = most_of(most, where_they_pass(at, go, u, come));
+        }
+    }
+    return most;
+}
+
 /* Error and worst shape after drawing v onto ring vertex j; 0 when it is too much, a facet turns or becomes a needle.
  * Where v lies over none of the new facets its distance is that from the edges between them, which is not less. */
 static int try_draw(const simplify_region *r, ring *around, int j, const double *at, double limit, double *error,
@@ -217,7 +261,8 @@ static int try_draw(const simplify_region *r, ring *around, int j, const double 
         for (i = 0; i < n; i++)
             if (around->crease[i] && i != j)
                 nearest = most_of(nearest, to_segment(at, u, r->xyz + 3 * (size_t)around->vertex[i]));
-    *error = around->error + sqrt(nearest);
+    if (nearest > spare) return 0;
+    *error = around->error + sqrt(most_of(nearest, between_edges(r, around, j, at)));
     return *error <= limit;
 }
 
@@ -257,7 +302,7 @@ static int remove_vertex(simplify_region *r, uint32_t v, double limit)
         double error, shape;
         if (creases && !around.crease[j]) continue;
         if (!try_draw(r, &around, j, at, limit, &error, &shape)) continue;
-        const double score = sqrt(shape) * (1 - 0.5 * error / limit);
+        const double score = sqrt(shape) * (1 - 0.95 * error / limit);
         if (score <= best_score || !keeps_topology(r, &around, j, v)) continue;
         best = j;
         best_score = score;
@@ -271,8 +316,8 @@ static int remove_vertex(simplify_region *r, uint32_t v, double limit)
 
 size_t swarf_simplify_region(simplify_region *r, double limit, int first)
 {
-    static const double steps[] = {0.02, 0.3, 1};
-    for (size_t step = first ? 0 : 2; step < sizeof steps / sizeof *steps; step++) {
+    static const double steps[] = {0.01, 0.05, 0.15, 0.4, 1};
+    for (size_t step = first ? 0 : 4; step < sizeof steps / sizeof *steps; step++) {
         for (size_t v = 0; first && v < r->vertex_count; v++) r->state[v] |= SIMPLIFY_DIRTY;
         for (int round = 0, removed = 1; round < ROUNDS && removed; round++) {
             removed = 0;

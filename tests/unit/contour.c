@@ -2,6 +2,7 @@
 /* Dual contouring: boxes with sharp edges, the same bits for any number of threads, errors that are kept, budgets, and
  * stocks of which little or nothing is left. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "test.h"
@@ -62,6 +63,70 @@ static void check_box(void)
         CHECK_NEAR(swarf_mesh_topology(mesh).volume_mm3, 120, 0.1);
         swarf_mesh_release(mesh);
     }
+    swarf_stock_destroy(stock);
+}
+
+/* Greatest distance of the vertices, edges' middles and centres of `from` to `to`. */
+static double reach(const swarf_mesh *from, const swarf_mesh *to)
+{
+    const swarf_triangles t = swarf_mesh_triangles(from), design = swarf_mesh_triangles(to);
+    static const double weights[7][3] = {
+        {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1. / 3, 1. / 3, 1. / 3}};
+    const size_t count = 7 * t.triangle_count;
+    double *points = malloc(3 * count * sizeof *points), *distance = malloc(count * sizeof *distance), worst = 0;
+    swarf_solid *solid = NULL;
+    if (CHECK(points && distance) && CHECK_OK(swarf_solid_create(&design, NULL, &solid))) {
+        for (size_t i = 0; i < count; i++)
+            for (size_t c = 0; c < 3; c++) {
+                points[3 * i + c] = 0;
+                for (size_t k = 0; k < 3; k++)
+                    points[3 * i + c] += weights[i % 7][k] * t.xyz[3 * (size_t)t.index[i / 7 * 3 + k] + c];
+            }
+        CHECK_OK(swarf_solid_distance(solid, points, count, NULL, distance, NULL));
+        for (size_t i = 0; i < count; i++) worst = fmax(worst, fabs(distance[i]));
+    }
+    swarf_solid_release(solid);
+    free(points);
+    free(distance);
+    return worst;
+}
+
+/* A part with slots on slopes, drilled and with a ball's trace: simplified it stays within the error, both ways. */
+static void check_error(void)
+{
+    const double lo[3] = {0, 0, -3}, hi[3] = {8, 6, 0};
+    swarf_stock *stock = make_box(lo, hi, 0.1);
+    static const struct {
+        const char *cutter;
+        swarf_path path;
+    } cuts[] = {{"flat:d=1.5,l=9", {.start = {-1, 1, -0.5}, .end = {9, 5, -2}, .has_motion = 1}},
+                {"ball:d=2,l=9", {.start = {2, 7, -1}, .end = {6, -1, -1.3}, .has_motion = 1}},
+                {"drill:d=1.2,l=9", {.start = {6.5, 4.5, 1}, .end = {6.5, 4.5, -4}, .has_motion = 1}},
+                {"bull:d=2,l=9,r=0.5", {.start = {1, 4, -0.77}, .end = {1.5, 5, -0.77}, .has_motion = 1}}};
+    for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
+        swarf_cutter *cutter = NULL;
+        if (!CHECK_OK(swarf_cutter_parse(cuts[i].cutter, &cutter))) continue;
+        CHECK_OK(swarf_stock_cut(stock, cutter, &cuts[i].path, 1, NULL));
+        swarf_cutter_release(cutter);
+    }
+    swarf_contour_options options = swarf_contour_options_default();
+    swarf_mesh *full = NULL;
+    if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &full, NULL))) return;
+    size_t before = swarf_mesh_triangles(full).triangle_count;
+    for (double error = 0.001; error < 0.1; error *= 4) {
+        swarf_mesh *mesh = NULL;
+        options.error_mm = error;
+        if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL))) continue;
+        CHECK(is_manifold(mesh));
+        CHECK(swarf_mesh_triangles(mesh).triangle_count < before);
+        before = swarf_mesh_triangles(mesh).triangle_count;
+        const double there = reach(full, mesh), back = reach(mesh, full);
+        if (!CHECK(there <= error * (1 + 1e-4) && back <= error * (1 + 1e-4)))
+            printf("error %g: full to simplified %g, simplified to full %g\n", error, there, back);
+        swarf_mesh_release(mesh);
+    }
+    CHECK(before * 10 < swarf_mesh_triangles(full).triangle_count);
+    swarf_mesh_release(full);
     swarf_stock_destroy(stock);
 }
 
@@ -179,6 +244,7 @@ static void check_small(void)
 int main(void)
 {
     check_box();
+    check_error();
     check_cylinder();
     check_refusals();
     check_small();

@@ -41,7 +41,8 @@ typedef struct swarf_contour_report {
     int budget_met;             /**< 0 when error_mm stopped it above triangle_budget */
 } swarf_contour_report;
 
-/** From a stock by dual contouring: a closed, oriented 2-manifold whose vertices lie on the surface and its edges.
+/** From a stock by dual contouring: a closed, oriented 2-manifold with edges, made from the field alone, which tells
+ *  faces to about a hundredth of a voxel and edges to half of one.
  *  `report` may be NULL. An empty stock gives an empty mesh. SWARF_ERROR_GEOMETRY: material reaches the border of the
  *  level set, which a file of another program may do. The result does not depend on the number of threads. */
 SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options *options,
