@@ -146,6 +146,9 @@ class Check:
         middle, corner = image.pixelColor(image.width() // 2, image.height() // 2), image.pixelColor(3, 3)
         assert middle != corner
         assert self.panel.operations.topLevelItemCount() == 4
+        icon = self.panel.bar.play.icon().pixmap(26, 26).toImage()
+        inked = sum(icon.pixelColor(x, y).alpha() > 128 for x in range(icon.width()) for y in range(icon.height()))
+        assert inked > 0.1 * icon.width() * icon.height(), "the button to play shows no drawing"
 
     def transporting(self):
         """Buttons, keys, slider."""
@@ -254,6 +257,56 @@ class Check:
         key(view, QtCore.Qt.Key_0, "0")
         pump(0.5)
 
+    def looking(self, document, job):
+        """Wide and floating, dark, in German."""
+        panel = self.panel
+        panel.set_speed(100.0)
+        panel.seek(panel._session.listing.operation_begin[1] + 6.5)
+        panel.findChild(type(panel._icons["path"]), "Swarf-path").setChecked(True)
+        panel.setFloating(True)
+        panel.setGeometry(10, 10, 1180, 720)
+        self.settle()
+        assert panel.splitter.orientation() == QtCore.Qt.Horizontal
+        screenshot("panel-wide.png")
+        panel.findChild(type(panel._icons["path"]), "Swarf-path").setChecked(False)
+        application = QtWidgets.QApplication.instance()
+        light, style = application.palette(), application.styleSheet()
+        dark = QtGui.QPalette(QtGui.QColor(53, 57, 62), QtGui.QColor(40, 43, 47))
+        application.setPalette(dark)
+        panel.colouring.setCurrentIndex(1)
+        panel.seek(panel.transport.end)
+        self.settle()
+        screenshot("panel-dark.png")
+        corner = panel.view.image().pixelColor(3, 3)
+        assert corner.lightness() < 100, "the background follows a dark theme"
+        application.setPalette(light)
+        application.setStyleSheet(style)
+        panel.colouring.setCurrentIndex(0)
+        panel.setFloating(False)
+        Gui.setLocale("de")
+        pump(0.2)
+        german = self.dock.LivePanel(Gui.getMainWindow())
+        german.setObjectName("SwarfGerman")
+        Gui.getMainWindow().addDockWidget(QtCore.Qt.RightDockWidgetArea, german)
+        Gui.getMainWindow().tabifyDockWidget(panel, german)
+        german.raise_()
+        german.watch(job)
+        wait_for(lambda: german._session is not None, "opening a second panel")
+        assert german.tabs.tabText(0) == "Operationen"
+        german.tabs.setCurrentWidget(german.accuracy)
+        german.show()
+        german.raise_()
+        pump(1.0)
+        screenshot("panel-german.png")
+        german.close()
+        wait_for(lambda: not german._old_engines, "the second panel's end")
+        Gui.getMainWindow().removeDockWidget(german)
+        german.deleteLater()
+        Gui.setLocale("en")
+        panel.raise_()
+        pump(0.3)
+        self.settle()
+
     def clicking(self, document):
         """From the stock to the line, and from the line to the stock."""
         panel, view = self.panel, self.panel.view
@@ -284,6 +337,8 @@ class Check:
         place = panel.program.visualRect(index).center()
         click(panel.program.viewport(), place.x(), place.y())
         self.settle(float(panel._session.listing.moves_of(row)[1]))
+        assert panel.program.currentIndex().row() == row, "the line that was clicked stays marked"
+        assert panel._session.listing.text(row) in panel.view.caption[1]
         screenshot("panel-line.png")
         panel.tabs.setCurrentWidget(panel.operations)
         pump(0.2)
@@ -411,6 +466,7 @@ def check():
     Gui.ActiveDocument.ActiveView.viewIsometric()
     Gui.SendMsgToActiveView("ViewFit")
     for step, arguments in ((check.opening, (document, job)), (check.transporting, ()), (check.steering, ()),
+                            (check.looking, (document, job)),
                             (check.clicking, (document,)), (check.accuracy, ()), (check.outputs, (document,)),
                             (check.bad_moments, (document, job)), (check.closing, ())):
         print("CHECK", step.__name__)

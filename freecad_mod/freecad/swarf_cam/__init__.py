@@ -9,3 +9,4 @@ import os
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 ICONS = os.path.join(FOLDER, "icons")
+TRANSLATIONS = os.path.join(FOLDER, "translations")

@@ -6,7 +6,7 @@ import os
 import FreeCAD
 import FreeCADGui as Gui
 
-from freecad.swarf_cam import ICONS
+from freecad.swarf_cam import ICONS, TRANSLATIONS
 from freecad.swarf_cam.gui import commands, preferences
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -43,5 +43,7 @@ class SwarfWorkbench(Gui.Workbench):
 
 Gui.addWorkbench(SwarfWorkbench())
 Gui.addIconPath(ICONS)
+Gui.addLanguagePath(TRANSLATIONS)
+Gui.updateLocale()
 Gui.addPreferencePage(preferences.Page, "Swarf")
 commands.register()

@@ -29,6 +29,7 @@ class Transport:
         self.wanted = 0.0
         self.at = 0.0
         self._time = 0.0
+        self._passed = 0.0  # since playing began; at may be of a picture from before
 
     @property
     def end(self):
@@ -45,6 +46,7 @@ class Transport:
         if self.wanted >= self.end:
             self.seek(0.0)
         self.playing = self.end > 0
+        self._passed = self.wanted
 
     def pause(self):
         """Stand where the cutting is."""
@@ -66,8 +68,7 @@ class Transport:
         """Let so much of the viewer's time go by; the place wanted now."""
         if not self.playing:
             return self.wanted
-        # at may be of a picture that was drawn before going back
-        stop = self.next_stop(min(self.at, self.wanted))
+        stop = self.next_stop(self._passed)
         if self.speed == AS_FAST_AS_POSSIBLE:
             self.wanted = stop
         else:
@@ -81,6 +82,8 @@ class Transport:
     def arrived(self, place):
         """The cutting stands at this place now; at a stop or the end playing is over."""
         self.at = place
+        if self.playing and place < self.wanted:
+            self._passed = max(self._passed, place)
         if self.playing and place == self.wanted and self._halts(place):
             self.playing = False
             self._time = self.clock.time_of(place)

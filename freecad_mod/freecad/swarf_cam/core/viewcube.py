@@ -92,22 +92,36 @@ def look_from(camera_type, camera, towards):
     return camera_type(eye, camera.target, up, perspective=camera.perspective, height=camera.height, fov=camera.fov)
 
 
+def _rotation(a, b):
+    """(axis, angle) of the rotation that takes one set of axes to another."""
+    matrix = [[sum(q[row] * p[column] for p, q in zip(a, b)) for column in range(3)] for row in range(3)]
+    cosine = (matrix[0][0] + matrix[1][1] + matrix[2][2] - 1) / 2
+    angle = math.acos(min(max(cosine, -1.0), 1.0))
+    axis = (matrix[2][1] - matrix[1][2], matrix[0][2] - matrix[2][0], matrix[1][0] - matrix[0][1])
+    if _dot(axis, axis) > 1e-12:
+        return _unit(axis), angle
+    if angle < 1.0:
+        return (0.0, 0.0, 1.0), 0.0
+    # Half a turn: (matrix + 1) / 2 is the axis times itself; its longest column is the most exact.
+    column = max(range(3), key=lambda i: matrix[i][i])
+    return _unit(tuple(matrix[row][column] + (row == column) for row in range(3))), angle
+
+
 def between(camera_type, a, b, share):
-    """A camera part of the way from one to the other, for turning the view so that the eye can follow."""
+    """A camera part of the way from one to the other by the shortest turn, gently at both ends."""
     share = share * share * (3 - 2 * share)
-    axes_a, axes_b = axes(a), axes(b)
+    axes_a = axes(a)
+    axis, angle = _rotation(axes_a, axes(b))
+    sine, cosine = math.sin(angle * share), math.cos(angle * share)
+
+    def turn(vector):
+        side, along = _cross(axis, vector), _dot(axis, vector) * (1 - cosine)
+        return tuple(cosine * v + sine * s + along * n for v, s, n in zip(vector, side, axis))
 
     def mix(p, q):
-        return tuple(x + (y - x) * share for x, y in zip(p, q))
-    back = mix(axes_a[2], axes_b[2])
-    if _dot(back, back) < 1e-3:  # from opposite sides: over the right
-        back = mix(back, axes_a[0])
-    up = mix(axes_a[1], axes_b[1])
-    if math.sqrt(_dot(_cross(up, back), _cross(up, back))) < 1e-3:
-        up = mix(up, axes_b[0])
-    target = mix(a.target, b.target)
-    da, db = math.dist(a.eye, a.target), math.dist(b.eye, b.target)
-    distance = da + (db - da) * share
-    eye = tuple(t + distance * v for t, v in zip(target, _unit(back)))
-    return camera_type(eye, target, up, perspective=b.perspective,
-                       height=a.height + (b.height - a.height) * share, fov=a.fov + (b.fov - a.fov) * share)
+        return p + (q - p) * share
+    target = tuple(map(mix, a.target, b.target))
+    distance = mix(math.dist(a.eye, a.target), math.dist(b.eye, b.target))
+    eye = tuple(t + distance * v for t, v in zip(target, turn(axes_a[2])))
+    return camera_type(eye, target, turn(axes_a[1]), perspective=b.perspective, height=mix(a.height, b.height),
+                       fov=mix(a.fov, b.fov))

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Qt through FreeCAD's PySide: Qt 5 or 6; FreeCAD 0.20 has the widgets in QtGui. The only place that knows which."""
 
-from PySide import QtCore, QtGui
+from PySide import QtCore, QtGui, QtSvg
 
 try:
     from PySide import QtWidgets
 except ImportError:
     QtWidgets = QtGui
 
-__all__ = ["QAction", "QtCore", "QtGui", "QtWidgets", "flags", "place_of"]
+__all__ = ["QAction", "QtCore", "QtGui", "QtSvg", "QtWidgets", "flags", "place_of"]
 
 # Qt 6 has it in QtGui.
 QAction = getattr(QtGui, "QAction", None) or QtWidgets.QAction

@@ -65,8 +65,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self._old_engines = []
         self._tag = 0
         self._opened_at = 0.0
-        self._resume = None
-        self._picked = None
+        self._resume = self._picked = self._line = None
         self.transport = None
         self.keeper = Keeper(self)
         self._build()
@@ -150,7 +149,7 @@ class LivePanel(QtWidgets.QDockWidget):
         for name, text in COLOURINGS:
             self.colouring.addItem(translate("Swarf", text), name)
         self.colouring.activated.connect(lambda *_: self._wish())
-        if "colouring" in known:
+        if hasattr(self._swarf.Scene, "set_surface"):  # else the scene does not know which move made what
             bar.addWidget(self.colouring)
         spring = QtWidgets.QWidget()
         spring.setSizePolicy(QtWidgets.QSizePolicy.Expanding, QtWidgets.QSizePolicy.Preferred)
@@ -263,7 +262,8 @@ class LivePanel(QtWidgets.QDockWidget):
         if self._engine is not None:
             self._engine.stop()
             self._old_engines.append(self._engine)
-        self._engine = self._session = self._watch = self._job = self.transport = self._resume = self._picked = None
+        self._engine = self._session = self._watch = self._job = None
+        self.transport = self._resume = self._picked = self._line = None
         self.view.close_job()
         self.view.mark, self.view.caption = None, ("", "", None)
         self.timeline.open(None)
@@ -354,6 +354,8 @@ class LivePanel(QtWidgets.QDockWidget):
         listing, last = session.listing, len(session.clock)
         move = min(int(place), max(last - 1, 0))
         line, operation = listing.line_of(move), listing.operation_at(move)
+        if self._line is not None and place == listing.moves_of(self._line)[1]:
+            line, operation = self._line, listing.operation[self._line]
         self.timeline.set_place(place)
         self.bar.set_clock(self.transport.time, session.clock.seconds)
         self.program.set_current(line)
@@ -409,6 +411,8 @@ class LivePanel(QtWidgets.QDockWidget):
         """Stop, and go to a place."""
         if self.transport is None:
             return
+        if self._line is not None and place != self._session.listing.moves_of(self._line)[1]:
+            self._line = None
         self.transport.seek(place)
         self._timer.stop()
         self.bar.set_playing(False)
@@ -440,8 +444,9 @@ class LivePanel(QtWidgets.QDockWidget):
             self.seek(self._session.listing.operation_begin[index])
 
     def _go_to_line(self, line):
-        """Show what a line has cut: stand behind its last move."""
+        """Show what a line has cut: stand behind its last move, but keep it marked, not the next one."""
         if self._session is not None:
+            self._line = line
             self.seek(self._session.listing.moves_of(line)[1])
 
     def _set_perspective(self, on):

@@ -1,0 +1,526 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="de" sourcelanguage="en">
+    <context>
+        <name>App::Property</name>
+        <message>
+            <source>Edge of a voxel: the finer, the more exact, the slower</source>
+            <translation>Kante eines Voxels: je feiner, desto genauer und langsamer</translation>
+        </message>
+        <message>
+            <source>Hash of the inputs of the results</source>
+            <translation>Prüfsumme der Eingaben der Ergebnisse</translation>
+        </message>
+        <message>
+            <source>How long the simulation took</source>
+            <translation>Wie lange die Simulation dauerte</translation>
+        </message>
+        <message>
+            <source>Material left outside the model</source>
+            <translation>Material, das außerhalb des Modells stehen blieb</translation>
+        </message>
+        <message>
+            <source>Material missing inside the model</source>
+            <translation>Material, das im Modell fehlt</translation>
+        </message>
+        <message>
+            <source>Names of the operations that were simulated</source>
+            <translation>Namen der simulierten Operationen</translation>
+        </message>
+        <message>
+            <source>Number of findings of class error</source>
+            <translation>Anzahl der Befunde der Klasse Fehler</translation>
+        </message>
+        <message>
+            <source>Number of moves</source>
+            <translation>Anzahl der Bewegungen</translation>
+        </message>
+        <message>
+            <source>The job that is simulated</source>
+            <translation>Der Auftrag, der simuliert wird</translation>
+        </message>
+        <message>
+            <source>Version of these properties</source>
+            <translation>Version dieser Eigenschaften</translation>
+        </message>
+        <message>
+            <source>Volume of the stock after</source>
+            <translation>Volumen des Rohteils danach</translation>
+        </message>
+        <message>
+            <source>Volume of the stock before</source>
+            <translation>Volumen des Rohteils davor</translation>
+        </message>
+        <message>
+            <source>Volume removed by all operations</source>
+            <translation>Von allen Operationen abgetragenes Volumen</translation>
+        </message>
+        <message>
+            <source>Volume removed by each operation, mm^3</source>
+            <translation>Von jeder Operation abgetragenes Volumen, mm^3</translation>
+        </message>
+        <message>
+            <source>What is left of the stock, an OpenVDB level set</source>
+            <translation>Was vom Rohteil übrig ist, ein OpenVDB-Level-Set</translation>
+        </message>
+        <message>
+            <source>What the simulation noticed</source>
+            <translation>Was der Simulation auffiel</translation>
+        </message>
+        <message>
+            <source>Whether the job's model could be compared</source>
+            <translation>Ob das Modell des Auftrags verglichen werden konnte</translation>
+        </message>
+        <message>
+            <source>Whether the results belong to the job as it is now</source>
+            <translation>Ob die Ergebnisse zum Auftrag gehören, wie er jetzt ist</translation>
+        </message>
+    </context>
+    <context>
+        <name>Swarf</name>
+        <message>
+            <source>, about {0:.1f} s to cut once</source>
+            <translation>, etwa {0:.1f} s für einmal Zerspanen</translation>
+        </message>
+        <message>
+            <source>Accuracy</source>
+            <translation>Genauigkeit</translation>
+        </message>
+        <message>
+            <source>Again</source>
+            <translation>Noch einmal</translation>
+        </message>
+        <message>
+            <source>BOTTOM</source>
+            <translation>UNTEN</translation>
+        </message>
+        <message>
+            <source>Below the top</source>
+            <translation>Unter der Oberkante</translation>
+        </message>
+        <message>
+            <source>By age</source>
+            <translation>Nach Alter</translation>
+        </message>
+        <message>
+            <source>By feed</source>
+            <translation>Nach Vorschub</translation>
+        </message>
+        <message>
+            <source>By operation</source>
+            <translation>Nach Operation</translation>
+        </message>
+        <message>
+            <source>By tool</source>
+            <translation>Nach Werkzeug</translation>
+        </message>
+        <message>
+            <source>Cancel</source>
+            <translation>Abbrechen</translation>
+        </message>
+        <message>
+            <source>Cancelled.</source>
+            <translation>Abgebrochen.</translation>
+        </message>
+        <message>
+            <source>Cancelled; nothing was changed.</source>
+            <translation>Abgebrochen; nichts wurde geändert.</translation>
+        </message>
+        <message>
+            <source>Cancelling ...</source>
+            <translation>Wird abgebrochen ...</translation>
+        </message>
+        <message>
+            <source>Click on the stock to learn which line cut it.</source>
+            <translation>Ein Klick auf das Rohteil zeigt, welche Zeile dort geschnitten hat.</translation>
+        </message>
+        <message>
+            <source>Click: go to the operation. The box shows its path in the 3D view.</source>
+            <translation>Klick: zur Operation gehen. Das Kästchen zeigt ihre Bahn in der 3D-Ansicht.</translation>
+        </message>
+        <message>
+            <source>Close</source>
+            <translation>Schließen</translation>
+        </message>
+        <message>
+            <source>Copy the picture</source>
+            <translation>Bild kopieren</translation>
+        </message>
+        <message>
+            <source>Cut at</source>
+            <translation>Geschnitten um</translation>
+        </message>
+        <message>
+            <source>Cutting '{0}' once ...</source>
+            <translation>„{0}“ wird einmal zerspant ...</translation>
+        </message>
+        <message>
+            <source>Cutting and comparing for the document ...</source>
+            <translation>Zerspanen und Vergleichen für das Dokument ...</translation>
+        </message>
+        <message>
+            <source>Darken corners when the view is at rest</source>
+            <translation>Ecken abdunkeln, wenn die Ansicht ruht</translation>
+        </message>
+        <message>
+            <source>Drawing ...</source>
+            <translation>Wird gezeichnet ...</translation>
+        </message>
+        <message>
+            <source>Drawing the animation ...</source>
+            <translation>Die Animation wird gezeichnet ...</translation>
+        </message>
+        <message>
+            <source>FRONT</source>
+            <translation>VORNE</translation>
+        </message>
+        <message>
+            <source>Folder for the frames of the animation</source>
+            <translation>Ordner für die Bilder der Animation</translation>
+        </message>
+        <message>
+            <source>How fast (Up, Down)</source>
+            <translation>Wie schnell (Auf, Ab)</translation>
+        </message>
+        <message>
+            <source>How fine a job is cut at first: more is sharper and slower</source>
+            <translation>Wie fein ein Auftrag anfangs zerspant wird: mehr ist schärfer und langsamer</translation>
+        </message>
+        <message>
+            <source>In the document: {0}</source>
+            <translation>Im Dokument: {0}</translation>
+        </message>
+        <message>
+            <source>Job</source>
+            <translation>Auftrag</translation>
+        </message>
+        <message>
+            <source>LEFT</source>
+            <translation>LINKS</translation>
+        </message>
+        <message>
+            <source>Line</source>
+            <translation>Zeile</translation>
+        </message>
+        <message>
+            <source>Live milling</source>
+            <translation>Fräsen, live</translation>
+        </message>
+        <message>
+            <source>Look from the corner (0); 1 to 6: the sides</source>
+            <translation>Von der Ecke ansehen (0); 1 bis 6: die Seiten</translation>
+        </message>
+        <message>
+            <source>Material</source>
+            <translation>Material</translation>
+        </message>
+        <message>
+            <source>Milling simulation</source>
+            <translation>Frässimulation</translation>
+        </message>
+        <message>
+            <source>Milling, live</source>
+            <translation>Fräsen, live</translation>
+        </message>
+        <message>
+            <source>Not enough memory: {0} Choose larger voxels on the page Accuracy.</source>
+            <translation>Zu wenig Speicher: {0} Wählen Sie auf der Seite Genauigkeit größere Voxel.</translation>
+        </message>
+        <message>
+            <source>One line back (Left)</source>
+            <translation>Eine Zeile zurück (Links)</translation>
+        </message>
+        <message>
+            <source>One line forward (Right)</source>
+            <translation>Eine Zeile vor (Rechts)</translation>
+        </message>
+        <message>
+            <source>One move back (Alt+Left)</source>
+            <translation>Eine Bewegung zurück (Alt+Links)</translation>
+        </message>
+        <message>
+            <source>One move forward (Alt+Right)</source>
+            <translation>Eine Bewegung vor (Alt+Rechts)</translation>
+        </message>
+        <message>
+            <source>Operation</source>
+            <translation>Operation</translation>
+        </message>
+        <message>
+            <source>Operations</source>
+            <translation>Operationen</translation>
+        </message>
+        <message>
+            <source>Perspective</source>
+            <translation>Perspektive</translation>
+        </message>
+        <message>
+            <source>Perspective (P)</source>
+            <translation>Perspektive (P)</translation>
+        </message>
+        <message>
+            <source>Picture of the stock</source>
+            <translation>Bild des Rohteils</translation>
+        </message>
+        <message>
+            <source>Picture or animation</source>
+            <translation>Bild oder Animation</translation>
+        </message>
+        <message>
+            <source>Play as soon as the job is read</source>
+            <translation>Abspielen, sobald der Auftrag gelesen ist</translation>
+        </message>
+        <message>
+            <source>Play or pause (Space)</source>
+            <translation>Abspielen oder anhalten (Leertaste)</translation>
+        </message>
+        <message>
+            <source>Point</source>
+            <translation>Punkt</translation>
+        </message>
+        <message>
+            <source>Program</source>
+            <translation>Programm</translation>
+        </message>
+        <message>
+            <source>Put the result into the document</source>
+            <translation>Ergebnis in das Dokument legen</translation>
+        </message>
+        <message>
+            <source>REAR</source>
+            <translation>HINTEN</translation>
+        </message>
+        <message>
+            <source>RIGHT</source>
+            <translation>RECHTS</translation>
+        </message>
+        <message>
+            <source>Read the job again</source>
+            <translation>Auftrag neu lesen</translation>
+        </message>
+        <message>
+            <source>Removed</source>
+            <translation>Abgetragen</translation>
+        </message>
+        <message>
+            <source>Save an animation ...</source>
+            <translation>Animation speichern ...</translation>
+        </message>
+        <message>
+            <source>Save the picture</source>
+            <translation>Bild speichern</translation>
+        </message>
+        <message>
+            <source>Save the picture ...</source>
+            <translation>Bild speichern ...</translation>
+        </message>
+        <message>
+            <source>Shadows when the view is at rest</source>
+            <translation>Schatten, wenn die Ansicht ruht</translation>
+        </message>
+        <message>
+            <source>Show the cutter</source>
+            <translation>Werkzeug zeigen</translation>
+        </message>
+        <message>
+            <source>Show the tool's path</source>
+            <translation>Werkzeugbahn zeigen</translation>
+        </message>
+        <message>
+            <source>Show the whole stock (F)</source>
+            <translation>Ganzes Rohteil zeigen (F)</translation>
+        </message>
+        <message>
+            <source>Simulate with this voxel size</source>
+            <translation>Mit dieser Voxelgröße simulieren</translation>
+        </message>
+        <message>
+            <source>Simulation</source>
+            <translation>Simulation</translation>
+        </message>
+        <message>
+            <source>Slope</source>
+            <translation>Neigung</translation>
+        </message>
+        <message>
+            <source>Speed</source>
+            <translation>Geschwindigkeit</translation>
+        </message>
+        <message>
+            <source>Stock {0:.2f} cm³, removed {1:.2f} cm³, left {2:.2f} cm³</source>
+            <translation>Rohteil {0:.2f} cm³, abgetragen {1:.2f} cm³, übrig {2:.2f} cm³</translation>
+        </message>
+        <message>
+            <source>Stop at every operation</source>
+            <translation>Bei jeder Operation anhalten</translation>
+        </message>
+        <message>
+            <source>Stop at findings</source>
+            <translation>Bei Befunden anhalten</translation>
+        </message>
+        <message>
+            <source>Stop at tool changes</source>
+            <translation>Bei Werkzeugwechseln anhalten</translation>
+        </message>
+        <message>
+            <source>Swarf: close the open task first
+</source>
+            <translation>Swarf: schließen Sie zuerst die offene Aufgabe
+</translation>
+        </message>
+        <message>
+            <source>Swarf: {0}: {1:.1f} mm^3 removed in {2:.1f} s
+</source>
+            <translation>Swarf: {0}: {1:.1f} mm^3 in {2:.1f} s abgetragen
+</translation>
+        </message>
+        <message>
+            <source>TOP</source>
+            <translation>OBEN</translation>
+        </message>
+        <message>
+            <source>The document was closed.</source>
+            <translation>Das Dokument wurde geschlossen.</translation>
+        </message>
+        <message>
+            <source>The job is gone: its result cannot be kept.</source>
+            <translation>Den Auftrag gibt es nicht mehr: sein Ergebnis kann nicht behalten werden.</translation>
+        </message>
+        <message>
+            <source>The job is gone: select another one and start again.</source>
+            <translation>Den Auftrag gibt es nicht mehr: wählen Sie einen anderen und beginnen Sie neu.</translation>
+        </message>
+        <message>
+            <source>The job was changed. What you see is how it was.</source>
+            <translation>Der Auftrag wurde geändert. Sie sehen, wie er war.</translation>
+        </message>
+        <message>
+            <source>The job was deleted meanwhile; its simulation is discarded.</source>
+            <translation>Der Auftrag wurde inzwischen gelöscht; seine Simulation wird verworfen.</translation>
+        </message>
+        <message>
+            <source>The job was deleted while it was being read.</source>
+            <translation>Der Auftrag wurde gelöscht, während er gelesen wurde.</translation>
+        </message>
+        <message>
+            <source>The job was deleted. What you see is how it was; it can still be played.</source>
+            <translation>Der Auftrag wurde gelöscht. Sie sehen, wie er war; er kann noch abgespielt werden.</translation>
+        </message>
+        <message>
+            <source>The stock as it was: nothing was cut here yet.</source>
+            <translation>Das Rohteil, wie es war: hier wurde noch nichts geschnitten.</translation>
+        </message>
+        <message>
+            <source>Time</source>
+            <translation>Zeit</translation>
+        </message>
+        <message>
+            <source>Time at the programmed feeds, of the whole program's</source>
+            <translation>Zeit mit den programmierten Vorschüben, von der des ganzen Programms</translation>
+        </message>
+        <message>
+            <source>Time line</source>
+            <translation>Zeitleiste</translation>
+        </message>
+        <message>
+            <source>To the next operation (Ctrl+Right)</source>
+            <translation>Zur nächsten Operation (Strg+Rechts)</translation>
+        </message>
+        <message>
+            <source>To the start of the operation (Ctrl+Left)</source>
+            <translation>Zum Anfang der Operation (Strg+Links)</translation>
+        </message>
+        <message>
+            <source>Tool</source>
+            <translation>Werkzeug</translation>
+        </message>
+        <message>
+            <source>Voxel size</source>
+            <translation>Voxelgröße</translation>
+        </message>
+        <message>
+            <source>Voxels along the stock's longest edge</source>
+            <translation>Voxel entlang der längsten Kante des Rohteils</translation>
+        </message>
+        <message>
+            <source>What the colours of the stock show</source>
+            <translation>Was die Farben des Rohteils zeigen</translation>
+        </message>
+        <message>
+            <source>Where to stop by itself</source>
+            <translation>Wo von selbst angehalten wird</translation>
+        </message>
+        <message>
+            <source>Written: {0}</source>
+            <translation>Geschrieben: {0}</translation>
+        </message>
+        <message>
+            <source>max</source>
+            <translation>max.</translation>
+        </message>
+        <message>
+            <source>real time</source>
+            <translation>Echtzeit</translation>
+        </message>
+        <message>
+            <source>the simulation has no job: it was deleted, or never chosen</source>
+            <translation>die Simulation hat keinen Auftrag: er wurde gelöscht oder nie gewählt</translation>
+        </message>
+        <message>
+            <source>{0:.0f} voxels along the longest edge, up to {1:.0f} MB</source>
+            <translation>{0:.0f} Voxel entlang der längsten Kante, bis zu {1:.0f} MB</translation>
+        </message>
+        <message>
+            <source>{0:.0f} voxels along the longest edge, up to {1}</source>
+            <translation>{0:.0f} Voxel entlang der längsten Kante, bis zu {1}</translation>
+        </message>
+        <message>
+            <source>{0:.2f} cm³</source>
+            <translation>{0:.2f} cm³</translation>
+        </message>
+        <message>
+            <source>{0:.3f} mm</source>
+            <translation>{0:.3f} mm</translation>
+        </message>
+    </context>
+    <context>
+        <name>Swarf_Live</name>
+        <message>
+            <source>Watch milling</source>
+            <translation>Fräsen ansehen</translation>
+        </message>
+        <message>
+            <source>Watch the stock of the job being cut, step by step, forward and back</source>
+            <translation>Ansehen, wie das Rohteil des Auftrags zerspant wird, Schritt für Schritt, vor und zurück</translation>
+        </message>
+    </context>
+    <context>
+        <name>Swarf_Simulate</name>
+        <message>
+            <source>Cut the stock of the job with its tools and compare it with the model</source>
+            <translation>Das Rohteil des Auftrags mit dessen Werkzeugen zerspanen und mit dem Modell vergleichen</translation>
+        </message>
+        <message>
+            <source>Simulate milling</source>
+            <translation>Fräsen simulieren</translation>
+        </message>
+    </context>
+    <context>
+        <name>Swarf_Update</name>
+        <message>
+            <source>Simulate the job of the chosen simulation again</source>
+            <translation>Den Auftrag der gewählten Simulation neu simulieren</translation>
+        </message>
+        <message>
+            <source>Update simulation</source>
+            <translation>Simulation aktualisieren</translation>
+        </message>
+    </context>
+    <context>
+        <name>Workbench</name>
+        <message>
+            <source>Milling simulation</source>
+            <translation>Frässimulation</translation>
+        </message>
+    </context>
+</TS>
