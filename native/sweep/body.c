@@ -248,21 +248,34 @@ static void drop_contained(outline *o)
     }
 }
 
-static swarf_piece to_piece(const face *f, double voxel)
+static swarf_exact_piece to_exact(const face *f)
 {
-    swarf_piece p = {.is_arc = f->radius > 0, .upper = 0.5 * (f->first + f->last) > same_angle};
-    p.first_r = (float)fmax(0, cos(f->first));
-    p.first_z = (float)sin(f->first);
-    p.last_r = (float)fmax(0, cos(f->last));
-    p.last_z = (float)sin(f->last);
+    swarf_exact_piece p = {.is_arc = f->radius > 0, .upper = 0.5 * (f->first + f->last) > same_angle};
+    p.first_r = fmax(0, cos(f->first));
+    p.first_z = sin(f->first);
+    p.last_r = fmax(0, cos(f->last));
+    p.last_z = sin(f->last);
     if (p.is_arc) {
-        p.centre_r = (float)(f->centre_r / voxel);
-        p.centre_z = (float)(f->centre_z / voxel);
-        p.radius = (float)(f->radius / voxel);
+        p.centre_r = f->centre_r;
+        p.centre_z = f->centre_z;
+        p.radius = f->radius;
     } else {
-        p.radius = (float)((cos(f->first) * f->r0 + sin(f->first) * f->z0) / voxel);
+        p.radius = cos(f->first) * f->r0 + sin(f->first) * f->z0;
     }
     return p;
+}
+
+static swarf_piece to_piece(const swarf_exact_piece *e, double voxel)
+{
+    return (swarf_piece){.centre_r = (float)(e->centre_r / voxel),
+                         .centre_z = (float)(e->centre_z / voxel),
+                         .radius = (float)(e->radius / voxel),
+                         .first_r = (float)e->first_r,
+                         .first_z = (float)e->first_z,
+                         .last_r = (float)e->last_r,
+                         .last_z = (float)e->last_z,
+                         .is_arc = e->is_arc,
+                         .upper = e->upper};
 }
 
 /* Greatest radius of a chain's component: at a node or where it is clipped, as arcs are split where they are vertical.
@@ -292,27 +305,28 @@ static swarf_status emit(const outline *o, double voxel, swarf_body *body)
     size_t pieces = 0;
     for (size_t i = 0; i < o->chain_count; i++) pieces += o->chains[i].count + 3;
     body->pieces = calloc(pieces ? pieces : 1, sizeof *body->pieces);
+    body->exact = calloc(pieces ? pieces : 1, sizeof *body->exact);
     body->components = calloc(o->chain_count ? o->chain_count : 1, sizeof *body->components);
-    if (!body->pieces || !body->components) return swarf_fail(SWARF_ERROR_MEMORY, "cutter: out of memory");
+    if (!body->pieces || !body->exact || !body->components)
+        return swarf_fail(SWARF_ERROR_MEMORY, "cutter: out of memory");
     for (size_t i = 0; i < o->chain_count; i++) {
         const chain *c = &o->chains[i];
         swarf_component *component = &body->components[body->component_count++];
         component->first = body->piece_count;
         for (size_t k = c->first; k < c->first + c->count; k++)
-            body->pieces[body->piece_count++] = to_piece(&o->faces[k], voxel);
+            body->exact[body->piece_count++] = to_exact(&o->faces[k]);
         if (isfinite(c->lo))
-            body->pieces[body->piece_count++] =
-                (swarf_piece){.radius = (float)(-c->lo / voxel), .first_z = -1, .last_z = -1};
+            body->exact[body->piece_count++] = (swarf_exact_piece){.radius = -c->lo, .first_z = -1, .last_z = -1};
         if (isfinite(c->hi))
-            body->pieces[body->piece_count++] =
-                (swarf_piece){.radius = (float)(c->hi / voxel), .first_z = 1, .last_z = 1, .upper = 1};
+            body->exact[body->piece_count++] =
+                (swarf_exact_piece){.radius = c->hi, .first_z = 1, .last_z = 1, .upper = 1};
         /* A plunge draws the lower and the upper border apart: what closes it between them is the widest place or
          * the wall. */
         if (!has_side(o, c) || isfinite(c->wall))
-            body->pieces[body->piece_count++] =
-                (swarf_piece){.radius = (float)(widest(o, c) / voxel), .first_r = 1, .last_r = 1};
+            body->exact[body->piece_count++] = (swarf_exact_piece){.radius = widest(o, c), .first_r = 1, .last_r = 1};
         component->count = body->piece_count - component->first;
     }
+    for (size_t k = 0; k < body->piece_count; k++) body->pieces[k] = to_piece(&body->exact[k], voxel);
     return SWARF_OK;
 }
 
@@ -392,7 +406,10 @@ swarf_status swarf_body_create(const swarf_cutter *cutter, swarf_part_kind kind,
             c->hi = highest->first > 0.5 * M_PI - same_angle ? INFINITY : reach(&o, c, highest->z1, o.z_hi);
         }
         drop_contained(&o);
-        body->radius = (float)(swarf_cutter_radius(cutter, kind) / voxel);
+        body->exact_radius = swarf_cutter_radius(cutter, kind);
+        body->exact_lo = o.z_lo;
+        body->exact_hi = o.z_hi;
+        body->radius = (float)(body->exact_radius / voxel);
         body->z_lo = (float)(o.z_lo / voxel);
         body->z_hi = (float)(o.z_hi / voxel);
         if (o.chain_count) {
@@ -415,6 +432,7 @@ void swarf_body_destroy(swarf_body *body)
 {
     if (!body) return;
     free(body->pieces);
+    free(body->exact);
     free(body->components);
     free(body);
 }

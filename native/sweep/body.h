@@ -25,6 +25,14 @@ typedef struct swarf_piece {
     int upper;
 } swarf_piece;
 
+/** The same in mm and double, for the exact surface. */
+typedef struct swarf_exact_piece {
+    double centre_r, centre_z, radius;
+    double first_r, first_z, last_r, last_z;
+    int is_arc;
+    int upper;
+} swarf_exact_piece;
+
 typedef struct swarf_component {
     size_t first, count; /* into the body's pieces */
 } swarf_component;
@@ -38,6 +46,8 @@ typedef struct swarf_body {
     float core_radius, core_lo, core_hi; /* a large cylinder inside */
     size_t piece_count, component_count;
     swarf_piece *pieces;
+    swarf_exact_piece *exact;                /* as many */
+    double exact_radius, exact_lo, exact_hi; /* enclosing cylinder, mm */
     swarf_component *components;
 } swarf_body;
 

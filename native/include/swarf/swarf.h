@@ -13,6 +13,7 @@
 #include "render.h"
 #include "solid.h"
 #include "stock.h"
+#include "surface.h"
 #include "sweep.h"
 
 #endif

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Surface: what the surface of a stock truly is, beyond the voxels: its first shape and the exact sweeps of the moves
+ * that were cut, in double precision.
+ *
+ * A block that was not cut before is a formula; any other first stock is its level set, trilinear between
+ * the voxels. Arcs and helices are themselves, not chords. Concave arcs of a cutter's meridian, and convex ones of
+ * enormous radius, are chords within 1/10000 of a voxel. Made once for a whole program; what stands after its
+ * first n moves is asked for with `moves` = n.
+ */
+#ifndef SWARF_SURFACE_H
+#define SWARF_SURFACE_H
+
+#include "stock.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Immutable; shared by reference count; any thread. */
+typedef struct swarf_surface swarf_surface;
+
+/** Take the first stock (read now, not kept) and a program (kept). Moves whose tool is not in `tools` or has no flutes
+ *  cut nothing. SWARF_ERROR_BUSY: the stock is in use by another thread. The caller owns one reference. */
+SWARF_API swarf_status swarf_surface_create(swarf_stock *first, const swarf_program *program, const swarf_tool *tools,
+                                            size_t tool_count, const swarf_progress *progress, swarf_surface **out);
+SWARF_API swarf_surface *swarf_surface_retain(swarf_surface *surface);
+/** Give one reference back; NULL is legal. */
+SWARF_API void swarf_surface_release(swarf_surface *surface);
+
+/** What a point sees of the surface, and what made that. */
+typedef struct swarf_surface_point {
+    double value;     /**< signed distance in mm as in the stock's field: negative in material; 0 on the surface */
+    double normal[3]; /**< unit, out of the material: the gradient of `value` */
+    double t;         /**< 0..1 along the move where the cutter touches */
+    int64_t move;     /**< index into the program; -1: the first shape */
+    /** Of the first shape: block 0 -x, 1 +x, 2 -y ... 5 +z, else 0. Of a cutter: number
+     *  of the line or arc among those its meridian is cut into, from the tip upwards. */
+    int32_t piece;
+    int32_t reserved;
+} swarf_surface_point;
+
+/** What can matter within one small box: scratch of one thread. Keeps the surface alive. */
+typedef struct swarf_surface_near swarf_surface_near;
+SWARF_API swarf_status swarf_surface_near_create(const swarf_surface *surface, swarf_surface_near **out);
+/** NULL is legal. */
+SWARF_API void swarf_surface_near_destroy(swarf_surface_near *near);
+
+/** Gather what the first shape and moves 0 .. moves - 1 can contribute to a zero within `where`; cost grows with the
+ *  box, some voxels are best. After a failure nothing is gathered. */
+SWARF_API swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const swarf_box *where);
+/** Parts of moves gathered. */
+SWARF_API size_t swarf_surface_near_count(const swarf_surface_near *near);
+/** The surface as seen from a point in the gathered box. Near a zero `value` is exact to first order, as far as a box
+ *  edge its sign is. */
+SWARF_API void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3], swarf_surface_point *out);
+/** Zero on the segment a .. b (both in the gathered box) by a bracketed search: 1, its place t in 0..1 and the point
+ *  seen there; 0 and outputs untouched when the values at a and b are not of opposite sign. */
+SWARF_API int swarf_surface_crossing(const swarf_surface_near *near, const double a[3], const double b[3],
+                                     double tolerance_mm, double *t, swarf_surface_point *out);
+
+/** Move points (3 doubles each) along their directions (any length but 0), forth or back by at most reach_mm, onto the
+ *  nearest zero; where there is none they stay, with move -2. normals_out (3 doubles each) and moves_out may be NULL;
+ *  points_out may be points. All cores; any number of points, in any order. */
+SWARF_API swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, const double *points,
+                                            const double *directions, size_t count, double reach_mm,
+                                            const swarf_progress *progress, double *points_out, double *normals_out,
+                                            int64_t *moves_out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

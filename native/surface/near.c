@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* What matters within a small box: gathered once, then looked at from many points in it.
+ *
+ * Each trace is looked at from the middle of the box; `raw` there changes no faster than a point moves, which bounds it
+ * everywhere in the box. What cannot have a zero in the box, or lies behind another trace everywhere, is left out. The
+ * rest is ordered by raw, so that a point stops looking as soon as nothing nearer can come. */
+#include "surface/surface.h"
+
+#include "base/memory.h"
+#include "base/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct seen {
+    double raw;
+    swarf_trace trace;
+};
+
+struct swarf_surface_near {
+    swarf_surface *surface;
+    struct seen *seen;
+    size_t count, room;
+    double middle[3];
+};
+
+swarf_status swarf_surface_near_create(const swarf_surface *surface, swarf_surface_near **out)
+{
+    SWARF_REQUIRE(surface && out, "surface: NULL");
+    swarf_surface_near *near = calloc(1, sizeof *near);
+    if (!near) return swarf_fail(SWARF_ERROR_MEMORY, "surface: out of memory");
+    near->surface = swarf_surface_retain((swarf_surface *)surface); /* only its count changes */
+    *out = near;
+    return SWARF_OK;
+}
+
+void swarf_surface_near_destroy(swarf_surface_near *near)
+{
+    if (!near) return;
+    swarf_surface_release(near->surface);
+    free(near->seen);
+    free(near);
+}
+
+size_t swarf_surface_near_count(const swarf_surface_near *near)
+{
+    return near ? near->count : 0;
+}
+
+struct gathering {
+    swarf_surface_near *near;
+    const swarf_box *where;
+    size_t limit;   /* parts of the moves that count */
+    double reach;   /* from the middle to a corner */
+    double ceiling; /* least upper bound of a trace's raw at the middle */
+};
+
+static int overlaps(const swarf_surface_box *box, const swarf_box *where)
+{
+    for (int k = 0; k < 3; k++)
+        if ((double)box->lo[k] > where->hi[k] || (double)box->hi[k] < where->lo[k]) return 0;
+    return 1;
+}
+
+static swarf_status gather_level(struct gathering *g, int level, size_t first, size_t end)
+{
+    const swarf_surface *surface = g->near->surface;
+    size_t span = 1;
+    for (int n = 0; n < level; n++) span *= SURFACE_FAN;
+    if (end > surface->level_count[level]) end = surface->level_count[level];
+    for (size_t i = first; i < end && i * span < g->limit; i++) {
+        if (!overlaps(&surface->level[level][i], g->where)) continue;
+        if (level > 0) {
+            SWARF_TRY(gather_level(g, level - 1, i * SURFACE_FAN, (i + 1) * SURFACE_FAN));
+            continue;
+        }
+        swarf_surface_near *near = g->near;
+        SWARF_TRY(swarf_array_reserve((void **)&near->seen, &near->room, near->count + 1, sizeof *near->seen));
+        struct seen *seen = &near->seen[near->count];
+        swarf_touch touch;
+        SWARF_TRY(swarf_surface_trace(surface, i, &seen->trace));
+        swarf_trace_touch(&seen->trace, near->middle, &touch);
+        seen->raw = touch.raw;
+        if (touch.raw > 2 * g->reach || touch.raw > g->ceiling + 2 * g->reach) continue;
+        if (touch.exact) g->ceiling = fmin(g->ceiling, touch.raw);
+        near->count++;
+    }
+    return SWARF_OK;
+}
+
+/* Ties keep the order of the program. */
+static int nearer(const void *a, const void *b)
+{
+    const struct seen *x = a, *y = b;
+    if (x->raw != y->raw) return x->raw < y->raw ? -1 : 1;
+    if (x->trace.move != y->trace.move) return x->trace.move < y->trace.move ? -1 : 1;
+    return x->trace.t0 < y->trace.t0 ? -1 : x->trace.t0 > y->trace.t0;
+}
+
+swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const swarf_box *where)
+{
+    SWARF_REQUIRE(near && where, "surface: NULL");
+    near->count = 0;
+    const swarf_surface *surface = near->surface;
+    struct gathering g = {.near = near, .where = where, .ceiling = INFINITY};
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        SWARF_REQUIRE(isfinite(where->lo[k]) && isfinite(where->hi[k]) && where->hi[k] >= where->lo[k],
+                      "surface: the box is empty or not finite in %c", "xyz"[k]);
+        near->middle[k] = 0.5 * (where->lo[k] + where->hi[k]);
+        square += 0.25 * (where->hi[k] - where->lo[k]) * (where->hi[k] - where->lo[k]);
+    }
+    g.reach = sqrt(square);
+    size_t lo = 0, hi = surface->part_count; /* first part of a move that does not count */
+    while (lo < hi) {
+        const size_t middle = (lo + hi) / 2;
+        if (surface->parts[middle].move < moves)
+            lo = middle + 1;
+        else
+            hi = middle;
+    }
+    g.limit = lo;
+    const int top = surface->levels - 1;
+    const swarf_status status = gather_level(&g, top, 0, surface->level_count[top]);
+    if (status != SWARF_OK) {
+        near->count = 0;
+        return status;
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < near->count; i++)
+        if (near->seen[i].raw <= g.ceiling + 2 * g.reach) near->seen[kept++] = near->seen[i];
+    near->count = kept;
+    if (kept > 1) qsort(near->seen, kept, sizeof *near->seen, nearer);
+    return SWARF_OK;
+}
+
+void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3], swarf_surface_point *out)
+{
+    swarf_surface_point found;
+    swarf_surface_first(near->surface, point, &found);
+    double square = 0, least = INFINITY;
+    for (int k = 0; k < 3; k++) square += (point[k] - near->middle[k]) * (point[k] - near->middle[k]);
+    const double away = sqrt(square), first = found.value;
+    for (size_t i = 0; i < near->count; i++) {
+        const struct seen *seen = &near->seen[i];
+        if (seen->raw - away > fmin(least, -first)) break;
+        swarf_touch touch;
+        swarf_trace_touch(&seen->trace, point, &touch);
+        if (touch.value >= least) continue;
+        least = touch.value;
+        if (-least <= first) continue;
+        found = (swarf_surface_point){.value = -least,
+                                      .normal = {-touch.gradient[0], -touch.gradient[1], -touch.gradient[2]},
+                                      .t = touch.t,
+                                      .move = seen->trace.move,
+                                      .piece = touch.piece};
+    }
+    *out = found;
+}
+
+int swarf_surface_crossing(const swarf_surface_near *near, const double a[3], const double b[3], double tolerance_mm,
+                           double *t, swarf_surface_point *out)
+{
+    swarf_surface_point at_lo, at_hi, at;
+    swarf_surface_evaluate(near, a, &at_lo);
+    swarf_surface_evaluate(near, b, &at_hi);
+    if (!((at_lo.value < 0) != (at_hi.value < 0))) return 0;
+    double lo = 0, hi = 1, f_lo = at_lo.value, f_hi = at_hi.value, length = 0;
+    for (int k = 0; k < 3; k++) length += (b[k] - a[k]) * (b[k] - a[k]);
+    length = sqrt(length);
+    double best = fabs(f_lo) < fabs(f_hi) ? lo : hi;
+    at = fabs(f_lo) < fabs(f_hi) ? at_lo : at_hi;
+    /* false position; every third step halves, so that the bracket closes however the value bends */
+    for (int step = 0; step < 200 && (hi - lo) * length > tolerance_mm && fabs(at.value) > 1e-12; step++) {
+        best = step % 3 == 2 ? 0.5 * (lo + hi) : lo + (hi - lo) * f_lo / (f_lo - f_hi);
+        const double point[3] = {a[0] + best * (b[0] - a[0]), a[1] + best * (b[1] - a[1]), a[2] + best * (b[2] - a[2])};
+        swarf_surface_evaluate(near, point, &at);
+        if ((at.value < 0) == (f_lo < 0)) {
+            lo = best;
+            f_lo = at.value;
+        } else {
+            hi = best;
+            f_hi = at.value;
+        }
+    }
+    *t = best;
+    *out = at;
+    return 1;
+}

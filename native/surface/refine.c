@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Many points onto the surface: sorted into cells, so that what a cell needs is gathered once for all of its points. */
+#include "base/parallel.h"
+#include "base/status.h"
+#include "surface/surface.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Edge of a cell in voxels: larger ones gather less often, but more. */
+static const double cell_voxels = 6;
+/* Points this close, as a part of the reach, are on the surface. */
+static const double on_surface = 1e-9;
+
+struct place {
+    int32_t cell[3];
+    uint32_t point;
+};
+
+struct refining {
+    const swarf_surface *surface;
+    size_t moves;
+    const double *points, *directions;
+    double reach, *points_out, *normals_out;
+    int64_t *moves_out;
+    double edge;
+    const struct place *places;
+    const size_t *runs; /* where the places of each cell start */
+    swarf_surface_near **near;
+    int near_count;
+};
+
+static void along(const double p[3], const double d[3], double s, double out[3])
+{
+    for (int k = 0; k < 3; k++) out[k] = p[k] + s * d[k];
+}
+
+/* Newton steps first; where they do not end, the nearest change of sign on a row of samples. */
+static int find_zero(const swarf_surface_near *near, const double p[3], const double d[3], double reach, double *s,
+                     swarf_surface_point *found)
+{
+    double q[3];
+    *s = 0;
+    for (int step = 0; step < 8; step++) {
+        along(p, d, *s, q);
+        swarf_surface_evaluate(near, q, found);
+        if (fabs(found->value) <= on_surface * reach) return 1;
+        const double slope = found->normal[0] * d[0] + found->normal[1] * d[1] + found->normal[2] * d[2];
+        if (fabs(slope) < 0.2) break;
+        *s -= found->value / slope;
+        if (fabs(*s) > reach) break;
+    }
+    enum { SAMPLES = 8 };
+    for (int i = 1; i <= SAMPLES; i++)
+        for (int side = -1; side <= 1; side += 2) {
+            double a[3], b[3], t;
+            along(p, d, side * reach * (i - 1) / SAMPLES, a);
+            along(p, d, side * reach * i / SAMPLES, b);
+            if (!swarf_surface_crossing(near, a, b, on_surface * reach, &t, found)) continue;
+            *s = side * reach * (i - 1 + t) / SAMPLES;
+            return 1;
+        }
+    return 0;
+}
+
+static void refine_point(const struct refining *work, const swarf_surface_near *near, size_t i)
+{
+    double p[3], d[3], s;
+    memcpy(p, work->points + 3 * i, sizeof p);
+    const double *given = work->directions + 3 * i;
+    const double length = sqrt(given[0] * given[0] + given[1] * given[1] + given[2] * given[2]);
+    for (int k = 0; k < 3; k++) d[k] = given[k] / length;
+    swarf_surface_point found;
+    const int ok = find_zero(near, p, d, work->reach, &s, &found);
+    along(p, d, ok ? s : 0, work->points_out + 3 * i);
+    for (int k = 0; k < 3 && work->normals_out; k++) work->normals_out[3 * i + (size_t)k] = ok ? found.normal[k] : d[k];
+    if (work->moves_out) work->moves_out[i] = ok ? found.move : -2;
+}
+
+static swarf_status refine_cell_with(const struct refining *work, swarf_surface_near *near, size_t run)
+{
+    const struct place *first = &work->places[work->runs[run]];
+    swarf_box box;
+    for (int k = 0; k < 3; k++) {
+        box.lo[k] = INFINITY;
+        box.hi[k] = -INFINITY;
+        for (size_t i = 0; i < work->runs[run + 1] - work->runs[run]; i++) {
+            const double at = work->points[3 * (size_t)first[i].point + (size_t)k];
+            box.lo[k] = fmin(box.lo[k], at - work->reach);
+            box.hi[k] = fmax(box.hi[k], at + work->reach);
+        }
+    }
+    SWARF_TRY(swarf_surface_gather(near, work->moves, &box));
+    for (size_t i = 0; i < work->runs[run + 1] - work->runs[run]; i++) refine_point(work, near, first[i].point);
+    return SWARF_OK;
+}
+
+static swarf_status refine_cell(void *context, size_t run)
+{
+    const struct refining *work = context;
+    /* the number of threads may have been raised since the scratch was made */
+    const int slot = swarf_parallel_slot();
+    if (slot < work->near_count) return refine_cell_with(work, work->near[slot], run);
+    swarf_surface_near *own = NULL;
+    SWARF_TRY(swarf_surface_near_create(work->surface, &own));
+    const swarf_status status = refine_cell_with(work, own, run);
+    swarf_surface_near_destroy(own);
+    return status;
+}
+
+static int by_cell(const void *a, const void *b)
+{
+    const struct place *x = a, *y = b;
+    for (int k = 0; k < 3; k++)
+        if (x->cell[k] != y->cell[k]) return x->cell[k] < y->cell[k] ? -1 : 1;
+    return x->point < y->point ? -1 : 1;
+}
+
+static swarf_status refine_sorted(struct refining *work, struct place *places, size_t *runs, size_t count,
+                                  const swarf_progress *progress)
+{
+    for (size_t i = 0; i < count; i++) {
+        for (int k = 0; k < 3; k++) {
+            const double cell = floor(work->points[3 * i + (size_t)k] / work->edge);
+            places[i].cell[k] = (int32_t)fmax(-2e9, fmin(2e9, cell));
+        }
+        places[i].point = (uint32_t)i;
+    }
+    qsort(places, count, sizeof *places, by_cell);
+    size_t cells = 0;
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || memcmp(places[i].cell, places[i - 1].cell, sizeof places[i].cell) != 0) runs[cells++] = i;
+    runs[cells] = count;
+    work->places = places;
+    work->runs = runs;
+    work->near_count = swarf_threads();
+    work->near = calloc((size_t)work->near_count, sizeof *work->near);
+    swarf_status status = work->near ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "surface: out of memory");
+    for (int i = 0; i < work->near_count && status == SWARF_OK; i++)
+        status = swarf_surface_near_create(work->surface, &work->near[i]);
+    if (status == SWARF_OK) status = swarf_parallel_for(cells, refine_cell, work, progress, 0, 1);
+    for (int i = 0; work->near && i < work->near_count; i++) swarf_surface_near_destroy(work->near[i]);
+    free(work->near);
+    return status;
+}
+
+swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, const double *points,
+                                  const double *directions, size_t count, double reach_mm,
+                                  const swarf_progress *progress, double *points_out, double *normals_out,
+                                  int64_t *moves_out)
+{
+    SWARF_REQUIRE(surface && (count == 0 || (points && directions && points_out)), "surface: NULL");
+    SWARF_REQUIRE(isfinite(reach_mm) && reach_mm > 0, "surface: reach %g mm is not a positive number", reach_mm);
+    SWARF_REQUIRE(count < UINT32_MAX, "surface: %zu points at once are too many", count);
+    for (size_t i = 0; i < count; i++) {
+        const double *d = directions + 3 * i;
+        for (int k = 0; k < 3; k++)
+            SWARF_REQUIRE(isfinite(points[3 * i + (size_t)k]) && isfinite(d[k]),
+                          "surface: coordinate %c of point or direction %zu is not finite", "xyz"[k], i);
+        SWARF_REQUIRE(d[0] != 0 || d[1] != 0 || d[2] != 0, "surface: direction %zu has no length", i);
+    }
+    struct refining work = {.surface = surface,
+                            .moves = moves,
+                            .points = points,
+                            .directions = directions,
+                            .reach = reach_mm,
+                            .points_out = points_out,
+                            .normals_out = normals_out,
+                            .moves_out = moves_out,
+                            .edge = cell_voxels * surface->voxel};
+    struct place *places = malloc((count + 1) * sizeof *places);
+    size_t *runs = malloc((count + 1) * sizeof *runs);
+    const swarf_status status = places && runs ? refine_sorted(&work, places, runs, count, progress)
+                                               : swarf_fail(SWARF_ERROR_MEMORY, "surface: out of memory");
+    free(places);
+    free(runs);
+    return status;
+}

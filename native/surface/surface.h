@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Inside of a surface.
+ *
+ * Parts of moves in the order of the program, 8 bytes each, and a tree of boxes over them: level 0 has one box per
+ * part, each further level one per FAN boxes of the one below. Moves that follow each other lie beside each other, so
+ * that their order needs no sorting, and "the first n moves" is a prefix of every level. */
+#ifndef SWARF_SURFACE_SURFACE_H
+#define SWARF_SURFACE_SURFACE_H
+
+#include "surface/trace.h"
+#include "swarf/surface.h"
+
+enum { SURFACE_FAN = 8, SURFACE_LEVELS = 12 };
+
+typedef struct swarf_surface_part {
+    uint32_t move, part;
+} swarf_surface_part;
+
+/** Rounded outwards. */
+typedef struct swarf_surface_box {
+    float lo[3], hi[3];
+} swarf_surface_box;
+
+struct swarf_surface {
+    int references; /* only by atomic operations */
+    double voxel;
+    int block; /* 1: the first shape is a block from lo to hi; 0: `field` */
+    double lo[3], hi[3];
+    swarf_stock *field;
+    swarf_program *program;
+    swarf_body **bodies; /* per tool */
+    size_t body_count;
+    int32_t *section_body; /* per section of the program: its body, or -1 */
+    swarf_surface_part *parts;
+    size_t part_count;
+    swarf_surface_box *level[SURFACE_LEVELS];
+    size_t level_count[SURFACE_LEVELS];
+    int levels;
+};
+
+/** The trace of a part; `parts`: of its move. */
+swarf_status swarf_surface_trace(const swarf_surface *surface, size_t part, swarf_trace *out);
+
+/** The first shape as a point sees it: value, normal, piece. */
+void swarf_surface_first(const swarf_surface *surface, const double point[3], swarf_surface_point *out);
+
+#endif

@@ -1,0 +1,459 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Distance to one trace, with its gradient: by the envelope theorem that of the cutter where it comes nearest.
+ *
+ * The same distances as the kernels take (sweep/kernel_body.h tells them), so that both agree within the band; but in
+ * double and mm, helices and upright arcs as themselves. Level lines, plunges and level arcs have the least plan
+ * distance as their nearest moment; on a tilted line phi is convex in time; on a curve it is convex but for the bend.
+ */
+#include "surface/trace.h"
+
+#include "program/arc.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+/* mm: what differs by less is level, or one radius. */
+static const double level = 1e-7;
+/* Lines steeper than this (run over rise) are vertical. */
+static const double vertical = 1e-9;
+/* Least moments are known to this many mm, those of curves among several are told apart to `apart`. */
+static const double settled = 1e-10, apart = 1e-6;
+
+static double clamp(double value, double lo, double hi)
+{
+    return value < lo ? lo : value > hi ? hi : value;
+}
+
+/* ---- making ------------------------------------------------------------------------------------------------------ */
+
+static double plan_radius(const swarf_path *path, const double point[3])
+{
+    int a, b, n;
+    swarf_plane_axes((swarf_plane)path->arc.plane, &a, &b, &n);
+    return hypot(point[a] - path->arc.centre[a], point[b] - path->arc.centre[b]);
+}
+
+static int is_level_arc(const swarf_path *path)
+{
+    return path->arc.plane == SWARF_PLANE_XY && fabs(path->start[2] - path->end[2]) <= level &&
+           fabs(plan_radius(path, path->start) - plan_radius(path, path->end)) <= level;
+}
+
+uint32_t swarf_trace_parts(const swarf_path *path)
+{
+    if (!path->is_arc) return 1;
+    const double turn = is_level_arc(path) ? fmin(fabs(path->arc.angle_rad), 2 * M_PI) : 2 * path->arc.angle_rad;
+    return (uint32_t)fmax(1, ceil(fabs(turn) / (0.5 * M_PI) - 1e-9));
+}
+
+static void make_line(swarf_trace *trace, const double a[3], const double b[3])
+{
+    const int falls = b[2] < a[2];
+    const double *low = falls ? b : a, *high = falls ? a : b;
+    memcpy(trace->point, low, sizeof trace->point);
+    trace->rise = high[2] - low[2];
+    trace->ux = 1;
+    trace->t0 = falls ? 1 : 0;
+    trace->t1 = falls ? 0 : 1;
+    const double dx = high[0] - low[0], dy = high[1] - low[1], run = hypot(dx, dy);
+    if (run > vertical * trace->rise) {
+        trace->run = run;
+        trace->ux = dx / run;
+        trace->uy = dy / run;
+        trace->slope = trace->rise / run;
+    }
+    trace->kind = trace->slope > 0 ? TRACE_TILTED : TRACE_LEVEL;
+}
+
+static void make_arc(swarf_trace *trace, const swarf_path *path, double share, double parts)
+{
+    const swarf_arc *arc = &path->arc;
+    const int back = arc->angle_rad < 0;
+    const double *first = back ? path->end : path->start;
+    const double turn = fmin(fabs(arc->angle_rad), 2 * M_PI);
+    memcpy(trace->point, path->start, sizeof trace->point);
+    memcpy(trace->centre, arc->centre, sizeof trace->centre);
+    trace->kind = TRACE_ARC;
+    trace->radius = plan_radius(path, path->start);
+    trace->turn = turn / parts;
+    trace->from = atan2(first[1] - arc->centre[1], first[0] - arc->centre[0]) + turn * share;
+    trace->t0 = back ? 1 - share : share;
+    trace->t1 = trace->t0 + (back ? -1 : 1) / parts;
+}
+
+void swarf_trace_make(const swarf_body *body, const swarf_path *path, int64_t move, uint32_t part, uint32_t parts,
+                      swarf_trace *out)
+{
+    const double share = (double)part / parts;
+    *out = (swarf_trace){.body = body, .move = move};
+    if (!path->is_arc) {
+        make_line(out, path->start, path->end);
+    } else if (is_level_arc(path)) {
+        make_arc(out, path, share, parts);
+    } else {
+        const double step = path->arc.angle_rad / parts;
+        out->kind = TRACE_CURVE;
+        out->path = *path;
+        out->t0 = share;
+        out->t1 = (double)(part + 1) / parts;
+        const double r0 = plan_radius(path, path->start), r1 = plan_radius(path, path->end);
+        /* where the radius changes with the angle, twice its rate times the angle's besides */
+        out->bend = fmax(r0, r1) * step * step + 2 * fabs(r1 - r0) / parts * fabs(step);
+    }
+}
+
+/* The tool's tip at t of the part, 0..1, and its change with t. */
+static void curve_at(const swarf_trace *trace, double t, double at[3], double rate[3])
+{
+    const swarf_path *path = &trace->path;
+    const double part = trace->t1 - trace->t0, whole = trace->t0 + part * t;
+    for (int k = 0; k < 3; k++) {
+        rate[k] = path->end[k] - path->start[k];
+        at[k] = path->start[k] + whole * rate[k];
+    }
+    int a, b, n;
+    swarf_plane_axes((swarf_plane)path->arc.plane, &a, &b, &n);
+    const double *c = path->arc.centre;
+    const double u = path->start[a] - c[a], v = path->start[b] - c[b];
+    const double r0 = hypot(u, v), r1 = hypot(path->end[a] - c[a], path->end[b] - c[b]);
+    const double grow = r0 > 0 ? (r1 - r0) / r0 : 0, scale = 1 + whole * grow;
+    const double angle = path->arc.angle_rad, cosine = cos(whole * angle), sine = sin(whole * angle);
+    const double x = cosine * u - sine * v, y = sine * u + cosine * v;
+    at[a] = c[a] + scale * x;
+    at[b] = c[b] + scale * y;
+    rate[a] = grow * x - scale * angle * y;
+    rate[b] = grow * y + scale * angle * x;
+    for (int k = 0; k < 3; k++) rate[k] *= part;
+}
+
+static double top_of(const swarf_body *body)
+{
+    return body->exact_hi;
+}
+
+void swarf_trace_box(const swarf_trace *trace, swarf_box *out)
+{
+    const double R = trace->body->exact_radius;
+    double a[3], b[3], rate[3], sag = 0;
+    if (trace->kind == TRACE_ARC) {
+        for (int i = 0; i < 2; i++) {
+            double *p = i ? b : a;
+            p[0] = trace->centre[0] + trace->radius * cos(trace->from + i * trace->turn);
+            p[1] = trace->centre[1] + trace->radius * sin(trace->from + i * trace->turn);
+            p[2] = trace->point[2];
+        }
+        sag = trace->radius * (1 - cos(0.5 * trace->turn));
+    } else if (trace->kind == TRACE_CURVE) {
+        curve_at(trace, 0, a, rate);
+        curve_at(trace, 1, b, rate);
+        sag = 0.125 * trace->bend;
+    } else {
+        memcpy(a, trace->point, sizeof a);
+        b[0] = a[0] + trace->ux * trace->run;
+        b[1] = a[1] + trace->uy * trace->run;
+        b[2] = a[2] + trace->rise;
+    }
+    for (int k = 0; k < 3; k++) {
+        out->lo[k] = fmin(a[k], b[k]) - sag + (k < 2 ? -R : trace->body->exact_lo);
+        out->hi[k] = fmax(a[k], b[k]) + sag + (k < 2 ? R : top_of(trace->body));
+    }
+}
+
+/* ---- the cutter standing ----------------------------------------------------------------------------------------- */
+
+static double piece_value(const swarf_exact_piece *p, double rho, double height, double *nr, double *nz)
+{
+    *nr = p->first_r;
+    *nz = p->first_z;
+    if (!p->is_arc) return rho * p->first_r + height * p->first_z - p->radius;
+    const double v = rho - p->centre_r, h = height - p->centre_z;
+    if (v * p->first_z < h * p->first_r && h * p->last_r < v * p->last_z) {
+        const double length = sqrt(v * v + h * h);
+        *nr = v / length;
+        *nz = h / length;
+        return length - p->radius;
+    }
+    const double first = v * p->first_r + h * p->first_z, last = v * p->last_r + h * p->last_z;
+    if (last > first) {
+        *nr = p->last_r;
+        *nz = p->last_z;
+        return last - p->radius;
+    }
+    return first - p->radius;
+}
+
+/* Offer a touch; the nearest stays. */
+static void offer(swarf_touch *best, double value, double raw, const double gradient[3], double t, int32_t piece)
+{
+    best->raw = fmin(best->raw, raw);
+    if (value >= best->value) return;
+    best->value = value;
+    memcpy(best->gradient, gradient, sizeof best->gradient);
+    best->t = t;
+    best->piece = piece;
+}
+
+/* A cutter whose height does not depend on the place: at plan distance rho, along (gx, gy) from it, over heights from
+ * `low` (beyond the tip at its low end) down to `high` (at its high end). */
+static void touch_level(const swarf_trace *trace, double rho, double gx, double gy, double low, double high, double t,
+                        swarf_touch *best)
+{
+    const swarf_body *body = trace->body;
+    for (size_t c = 0; c < body->component_count; c++) {
+        const swarf_component *component = &body->components[c];
+        double value = -INFINITY, nr = 0, nz = 0, pr, pz;
+        size_t piece = component->first;
+        for (size_t k = component->first; k < component->first + component->count; k++) {
+            const swarf_exact_piece *p = &body->exact[k];
+            const double own = piece_value(p, rho, p->upper ? high : low, &pr, &pz);
+            if (own <= value) continue;
+            value = own;
+            nr = pr;
+            nz = pz;
+            piece = k;
+        }
+        const double gradient[3] = {nr * gx, nr * gy, nz};
+        const double at = trace->kind == TRACE_LEVEL && trace->run == 0 && body->exact[piece].upper ? trace->t1 : t;
+        offer(best, value, value, gradient, at, (int32_t)piece);
+    }
+}
+
+static void touch_level_line(const swarf_trace *trace, const double p[3], swarf_touch *best)
+{
+    const double ex = p[0] - trace->point[0], ey = p[1] - trace->point[1];
+    const double s = clamp(ex * trace->ux + ey * trace->uy, 0, trace->run);
+    const double dx = ex - s * trace->ux, dy = ey - s * trace->uy, rho = sqrt(dx * dx + dy * dy);
+    const double low = p[2] - trace->point[2];
+    const double t = trace->run > 0 ? trace->t0 + (trace->t1 - trace->t0) * s / trace->run : trace->t0;
+    touch_level(trace, rho, rho > 0 ? dx / rho : 1, rho > 0 ? dy / rho : 0, low, low - trace->rise, t, best);
+}
+
+static void touch_arc(const swarf_trace *trace, const double p[3], swarf_touch *best)
+{
+    const double dx = p[0] - trace->centre[0], dy = p[1] - trace->centre[1];
+    double angle = remainder(atan2(dy, dx) - trace->from - 0.5 * trace->turn, 2 * M_PI);
+    angle = trace->from + 0.5 * trace->turn + clamp(angle, -0.5 * trace->turn, 0.5 * trace->turn);
+    const double cx = trace->centre[0] + trace->radius * cos(angle);
+    const double cy = trace->centre[1] + trace->radius * sin(angle);
+    const double ex = p[0] - cx, ey = p[1] - cy, rho = sqrt(ex * ex + ey * ey), height = p[2] - trace->point[2];
+    const double t = trace->t0 + (trace->t1 - trace->t0) * (angle - trace->from) / trace->turn;
+    touch_level(trace, rho, rho > 0 ? ex / rho : 1, rho > 0 ? ey / rho : 0, height, height, t, best);
+}
+
+/* ---- tilted lines of cylinders and balls ------------------------------------------------------------------------- */
+
+/* A cylinder from `bottom` to `top` above the tip; its lower face has the piece number `piece`. */
+static void touch_cylinder(const swarf_trace *trace, const double p[3], double R, double bottom, double top,
+                           int32_t piece, swarf_touch *best)
+{
+    const double m = trace->slope, im = 1 / sqrt(1 + m * m);
+    const double ex = p[0] - trace->point[0], ey = p[1] - trace->point[1], z = p[2] - trace->point[2];
+    const double s = ex * trace->ux + ey * trace->uy, w = ey * trace->ux - ex * trace->uy;
+    const double along = clamp(s, 0, trace->run), beyond = s - along, rho = sqrt(beyond * beyond + w * w);
+    const double chord2 = fmax(0, R * R - w * w), chord = sqrt(chord2);
+    const double norm = sqrt(chord2 + m * m * R * R), scale = chord / norm;
+    const double low = bottom - z, high = z - (top + trace->rise);
+    const double under = scale * ((s - chord) * m + bottom - z), over = scale * (z - top - (s + chord) * m);
+    double value = rho - R, gs = rho > 0 ? beyond / rho : 1, gw = rho > 0 ? w / rho : 0, gz = 0, at = along;
+    int32_t touched = piece + 1;
+    if (low > value) {
+        value = low;
+        gs = gw = at = 0;
+        gz = -1;
+        touched = piece;
+    }
+    if (high > value) {
+        value = high;
+        gs = gw = 0;
+        gz = 1;
+        at = trace->run;
+        touched = piece + 2;
+    }
+    if (under > value) {
+        value = under;
+        gs = m * chord / norm;
+        gw = m * clamp(w, -R, R) / norm;
+        gz = -chord / norm;
+        at = clamp(s - chord, 0, trace->run);
+        touched = piece;
+    }
+    if (over > value) {
+        value = over;
+        gs = -m * chord / norm;
+        gw = m * clamp(w, -R, R) / norm;
+        gz = chord / norm;
+        at = clamp(s + chord, 0, trace->run);
+        touched = piece + 2;
+    }
+    const double plane_under = ((s - R) * m + bottom - z) * im, plane_over = (z - top - (s + R) * m) * im;
+    const double raw = fmax(fmax(rho - R, fmax(low, high)), fmax(plane_under, plane_over));
+    const double gradient[3] = {gs * trace->ux - gw * trace->uy, gs * trace->uy + gw * trace->ux, gz};
+    offer(best, value, raw, gradient, trace->t0 + (trace->t1 - trace->t0) * at / trace->run, touched);
+    best->exact = 0;
+}
+
+static void touch_ball(const swarf_trace *trace, const double p[3], swarf_touch *best)
+{
+    const swarf_exact_piece *ball = trace->body->exact;
+    const double R = ball->radius, length = sqrt(trace->run * trace->run + trace->rise * trace->rise);
+    const double d[3] = {trace->ux * trace->run / length, trace->uy * trace->run / length, trace->rise / length};
+    double e[3] = {p[0] - trace->point[0], p[1] - trace->point[1], p[2] - trace->point[2] - ball->centre_z};
+    const double q = clamp(e[0] * d[0] + e[1] * d[1] + e[2] * d[2], 0, length);
+    for (int k = 0; k < 3; k++) e[k] -= q * d[k];
+    const double away = sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    const double gradient[3] = {away > 0 ? e[0] / away : 0, away > 0 ? e[1] / away : 0, away > 0 ? e[2] / away : -1};
+    touch_cylinder(trace, p, R, ball->centre_z, top_of(trace->body), 0, best);
+    offer(best, away - R, away - R, gradient, trace->t0 + (trace->t1 - trace->t0) * q / length, 0);
+}
+
+/* ---- any cutter on tilted lines and curves ------------------------------------------------------------------------
+ */
+
+/* phi of a component at a moment t of the part, 0..1, its slope in t, and its gradient. */
+struct moment {
+    double t, value, slope, gradient[3];
+    int32_t piece;
+};
+
+struct search {
+    const swarf_trace *trace;
+    const swarf_component *component;
+    const double *point;
+    swarf_touch *best;
+};
+
+static struct moment at_moment(const struct search *search, double t)
+{
+    const swarf_trace *trace = search->trace;
+    const swarf_component *component = search->component;
+    double at[3], rate[3] = {trace->ux * trace->run, trace->uy * trace->run, trace->rise};
+    if (trace->kind == TRACE_CURVE)
+        curve_at(trace, t, at, rate);
+    else
+        for (int k = 0; k < 3; k++) at[k] = trace->point[k] + t * rate[k];
+    const double x = search->point[0] - at[0], y = search->point[1] - at[1], height = search->point[2] - at[2];
+    const double rho = sqrt(x * x + y * y);
+    struct moment m = {.t = t, .value = -INFINITY};
+    double nr = 0, nz = 0, pr, pz;
+    for (size_t k = component->first; k < component->first + component->count; k++) {
+        const double own = piece_value(&trace->body->exact[k], rho, height, &pr, &pz);
+        if (own <= m.value) continue;
+        m.value = own;
+        nr = pr;
+        nz = pz;
+        m.piece = (int32_t)k;
+    }
+    m.gradient[0] = rho > 0 ? nr * x / rho : 0;
+    m.gradient[1] = rho > 0 ? nr * y / rho : 0;
+    m.gradient[2] = nz;
+    for (int k = 0; k < 3; k++) m.slope -= m.gradient[k] * rate[k];
+    return m;
+}
+
+/* Where the tangents at both ends meet, and the height there: the least value there can be if nothing bends. */
+static double tangents_meet(const struct moment *a, const struct moment *b, double *bound)
+{
+    if (a->slope >= 0 || b->slope <= 0) {
+        const struct moment *end = a->slope >= 0 ? a : b;
+        *bound = end->value;
+        return end->t;
+    }
+    const double step = (a->value - b->value + b->slope * (b->t - a->t)) / (b->slope - a->slope);
+    *bound = a->value + a->slope * clamp(step, 0, b->t - a->t);
+    return clamp(a->t + step, a->t, b->t);
+}
+
+static void offer_moment(const struct search *search, const struct moment *m, double value, const double gradient[3],
+                         double t)
+{
+    const swarf_trace *trace = search->trace;
+    offer(search->best, value, m->value < value ? m->value : value, gradient, trace->t0 + (trace->t1 - trace->t0) * t,
+          m->piece);
+}
+
+/* Least value between two moments, phi being convex between them. Its gradient is the mix of both ends' that stands
+ * across the motion; dividing by its length makes what edges sweep have a unit gradient. */
+static void search_convex(const struct search *search, struct moment a, struct moment b)
+{
+    if (a.slope >= 0 || b.slope <= 0) {
+        const struct moment *end = a.slope >= 0 ? &a : &b;
+        offer_moment(search, end, end->value, end->gradient, end->t);
+        return;
+    }
+    double bound, t = tangents_meet(&a, &b, &bound);
+    /* bisection every other step halves the bracket at least that often: 2^-40 of a move is less than settled */
+    for (int step = 0; step < 80 && fmin(a.value, b.value) - bound > settled; step++) {
+        const struct moment m = at_moment(search, step & 1 ? 0.5 * (a.t + b.t) : t);
+        if (m.slope < 0)
+            a = m;
+        else
+            b = m;
+        t = tangents_meet(&a, &b, &bound);
+    }
+    const double part = b.slope > a.slope ? clamp(-a.slope / (b.slope - a.slope), 0, 1) : 0;
+    double gradient[3], square = 0;
+    for (int k = 0; k < 3; k++) {
+        gradient[k] = a.gradient[k] + (b.gradient[k] - a.gradient[k]) * part;
+        square += gradient[k] * gradient[k];
+    }
+    /* deep inside, opposite sides of the cutter cancel: no more than tenfold */
+    const double length = fmax(sqrt(square), 0.1);
+    for (int k = 0; k < 3; k++) gradient[k] /= length;
+    struct moment found = part < 0.5 ? a : b;
+    found.value = bound;
+    offer_moment(search, &found, bound / fmin(length, 1), gradient, t);
+}
+
+/* Least value on a stretch of a curve, unless it is above what is known; the bend says by how much phi may fall short
+ * of a convex function. Halves of the stretch follow each other until that does not matter. */
+static void search_curve(const struct search *search, const struct moment *a, const struct moment *b)
+{
+    const double width = b->t - a->t, slack = 0.5 * search->trace->bend * width * width;
+    double bound;
+    tangents_meet(a, b, &bound);
+    if (bound - slack >= search->best->value || bound - slack >= search->best->raw) return;
+    if (slack < apart) {
+        search_convex(search, *a, *b);
+        return;
+    }
+    const struct moment m = at_moment(search, 0.5 * (a->t + b->t));
+    const int left_first = m.slope >= 0;
+    search_curve(search, left_first ? a : &m, left_first ? &m : b);
+    search_curve(search, left_first ? &m : a, left_first ? b : &m);
+}
+
+static void touch_any(const swarf_trace *trace, const double p[3], swarf_touch *best)
+{
+    for (size_t c = 0; c < trace->body->component_count; c++) {
+        swarf_touch own = *best;
+        own.value = own.raw = INFINITY;
+        const struct search search = {trace, &trace->body->components[c], p, &own};
+        const struct moment a = at_moment(&search, 0), b = at_moment(&search, 1);
+        if (trace->kind == TRACE_CURVE)
+            search_curve(&search, &a, &b);
+        else
+            search_convex(&search, a, b);
+        offer(best, own.value, own.raw, own.gradient, own.t, own.piece);
+    }
+}
+
+void swarf_trace_touch(const swarf_trace *trace, const double point[3], swarf_touch *out)
+{
+    swarf_touch best = {.value = INFINITY, .raw = INFINITY, .exact = 1};
+    const swarf_body *body = trace->body;
+    switch (trace->kind) {
+    case TRACE_LEVEL: touch_level_line(trace, point, &best); break;
+    case TRACE_ARC: touch_arc(trace, point, &best); break;
+    case TRACE_CURVE: touch_any(trace, point, &best); break;
+    case TRACE_TILTED:
+        if (body->kind == SWARF_BODY_CYLINDER)
+            touch_cylinder(trace, point, body->exact_radius, body->exact_lo, top_of(body), 0, &best);
+        else if (body->kind == SWARF_BODY_BALL)
+            touch_ball(trace, point, &best);
+        else
+            touch_any(trace, point, &best);
+        break;
+    }
+    *out = best;
+}
