@@ -98,6 +98,7 @@ typedef enum swarf_request { SWARF_REQUEST_NONE, SWARF_REQUEST_CALL, SWARF_REQUE
 struct swarf_machine {
     const swarf_dialect *dialect;
     int block_delete;
+    int has_table; /**< a tool table was given */
     swarf_place place;
     swarf_program *program;
     swarf_notes *notes;
@@ -106,6 +107,7 @@ struct swarf_machine {
     double position[SWARF_AXES];
 
     int system;                /**< 1 G54 ... 9 G59.3 */
+    int plain;                 /**< the tip is position + constant */
     double work[SWARF_AXES];   /**< its origin */
     double turn_deg;           /**< its rotation */
     double shift[SWARF_AXES];  /**< G92 and G52 in force */
@@ -116,38 +118,33 @@ struct swarf_machine {
     int home_known[2]; /**< G28.1, G30.1 were told in this program */
     int frame_fixed;
     double frame[3], frame_deg;
+    int selected;    /**< tool by T, -1 for none */
     int frame_stale; /**< offsets changed since the last move: the tip may be elsewhere than the program left it */
     double last_tip[3];
-    int plain; /**< the tip is position + constant */
     double cosine, sine, constant[3];
 
     swarf_gcode_tool *tools;
     size_t tool_count, tool_room;
-    int has_table;
-    int selected; /**< by T, -1 for none */
     swarf_section section, settled;
-    int is_settled;      /**< the program's section is `settled` */
     uint32_t *tool_uses; /**< by tool number: M6 so far, for the operations' names */
     size_t tool_room_used;
 
     swarf_cycle cycle;
     swarf_compensation comp;
-    int had_spline;
+    int had_spline, has_returned;
     double spline[2]; /**< direction that the next G5 goes on with */
     double axes_now[6];
 
     swarf_modes saved[SWARF_CALLS_MAX + 2]; /**< by call level */
     int is_saved[SWARF_CALLS_MAX + 2];      /**< 1 by M70, 2 by M73: brought back on return */
-    int level;
+    int level, is_settled;                  /**< is_settled: the program's section is `settled` */
     double returned;
-    int has_returned;
 
     swarf_request request;
-    int call_number, call_repeats;
+    int call_number, call_repeats, ended;
     swarf_word call_word;
     uint32_t warned;        /**< SWARF_WARNED_... */
     uint32_t systems_moved; /**< bit per work offset that motion used */
-    int ended;
 };
 
 enum {
