@@ -154,6 +154,8 @@ static picture_object *picture_create(module_state *state, const swarf_picture_o
 typedef struct scene_object {
     PyObject_HEAD swarf_scene *handle;
     PyObject *stock;
+    swarf_surface *surface;  /* NULL: none */
+    program_object *program; /* of the surface: closed while that lives */
 } scene_object;
 
 static PyObject *scene_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
@@ -173,9 +175,20 @@ static PyObject *scene_new(PyTypeObject *type, PyObject *args, PyObject *keyword
     return NULL;
 }
 
+/** Let go of the surface and open its program. */
+static void drop_surface(scene_object *scene)
+{
+    swarf_surface_release(scene->surface);
+    if (scene->program) scene->program->exports--;
+    Py_XDECREF((PyObject *)scene->program);
+    scene->surface = NULL;
+    scene->program = NULL;
+}
+
 static void scene_dealloc(PyObject *self)
 {
     swarf_scene_destroy(((scene_object *)self)->handle);
+    drop_surface((scene_object *)self);
     Py_XDECREF(((scene_object *)self)->stock);
     object_free(self);
 }
@@ -212,6 +225,57 @@ static PyObject *scene_set_fixtures(PyObject *self, PyObject *meshes)
     PyMem_Free(triangles);
     Py_DECREF(list);
     return result;
+}
+
+static PyObject *scene_set_surface(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"first", "program", "tools", "moves", "progress", NULL};
+    module_state *state = state_of(self);
+    scene_object *scene = (scene_object *)self;
+    PyObject *first, *program = NULL, *dict = NULL, *moves_object = Py_None, *progress = NULL;
+    size_t from, moves, tool_count;
+    swarf_surface *surface = NULL;
+    swarf_tool *tools;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!O!|O$O:set_surface", names, state->stock, &first,
+                                     state->program, &program, &PyDict_Type, &dict, &moves_object, &progress) ||
+        program_range((program_object *)program, 0, moves_object, &from, &moves) ||
+        tools_read(state, dict, &tools, &tool_count))
+        return NULL;
+    program_object *held = (program_object *)Py_NewRef(program);
+    held->exports++;
+    native_call call;
+    int failed = call_begin(&call, progress);
+    if (!failed) {
+        swarf_status status = swarf_surface_create(((stock_object *)first)->handle, held->handle, tools, tool_count,
+                                                   &call.progress, &surface);
+        if (!status) status = swarf_scene_set_surface(scene->handle, surface, moves);
+        failed = call_end(&call, state, status);
+    }
+    tools_free(tools, tool_count);
+    if (failed) {
+        swarf_surface_release(surface);
+        held->exports--;
+        Py_DECREF((PyObject *)held);
+        return NULL;
+    }
+    drop_surface(scene);
+    scene->surface = surface;
+    scene->program = held;
+    Py_RETURN_NONE;
+}
+
+static PyObject *scene_set_moves(PyObject *self, PyObject *count)
+{
+    scene_object *scene = (scene_object *)self;
+    size_t from, moves;
+    if (!scene->surface) {
+        PyErr_SetString(PyExc_ValueError, "set_moves: the scene has no surface; call set_surface() first");
+        return NULL;
+    }
+    if (program_range(scene->program, 0, count, &from, &moves)) return NULL;
+    const swarf_status status = swarf_scene_set_surface(scene->handle, scene->surface, moves);
+    if (status) return error_raise(state_of(self), status);
+    Py_RETURN_NONE;
 }
 
 static int check_size(int width, int height)
@@ -345,11 +409,11 @@ static int view_read(module_state *state, const view_objects *o, const char *col
 
 static PyObject *scene_render(PyObject *self, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"camera",         "width",      "height",    "samples",       "coarse",   "budget_ms",
-                            "buffers",        "edges",      "occlusion", "shadow",        "colour",   "background",
-                            "background_top", "colouring",  "values",    "value_range",   "sections", "cutter",
-                            "program",        "moves_done", "path",      "selected_line", "outline",  "axes",
-                            "progress",       NULL};
+    static char *names[] = {"camera",     "width",          "height",     "samples",   "coarse",        "budget_ms",
+                            "buffers",    "exact",          "edges",      "occlusion", "shadow",        "colour",
+                            "background", "background_top", "colouring",  "values",    "value_range",   "sections",
+                            "cutter",     "program",        "moves_done", "path",      "selected_line", "outline",
+                            "axes",       "progress",       NULL};
     module_state *state = state_of(self);
     PyObject *buffers = NULL, *progress = NULL;
     const char *colouring = colouring_names[0];
@@ -357,11 +421,11 @@ static PyObject *scene_render(PyObject *self, PyObject *args, PyObject *keywords
     view v = {.options = swarf_picture_options_default()};
     swarf_picture_options *o = &v.options;
     if (!PyArg_ParseTupleAndKeywords(
-            args, keywords, "O!|ii$iidOpppOOOsOdOOOdpIOdO:render", names, state->camera, &objects.camera, &o->width,
-            &o->height, &o->samples, &o->coarse, &o->budget_ms, &buffers, &o->edges, &o->occlusion, &o->shadow,
-            &objects.colour, &objects.background, &objects.background_top, &colouring, &objects.values, &o->value_range,
-            &objects.sections, &objects.cutter, &objects.program, &o->moves_done, &o->path, &o->selected_line,
-            &objects.outline, &o->axes_mm, &progress) ||
+            args, keywords, "O!|ii$iidOppppOOOsOdOOOdpIOdO:render", names, state->camera, &objects.camera, &o->width,
+            &o->height, &o->samples, &o->coarse, &o->budget_ms, &buffers, &o->exact, &o->edges, &o->occlusion,
+            &o->shadow, &objects.colour, &objects.background, &objects.background_top, &colouring, &objects.values,
+            &o->value_range, &objects.sections, &objects.cutter, &objects.program, &o->moves_done, &o->path,
+            &o->selected_line, &objects.outline, &o->axes_mm, &progress) ||
         view_read(state, &objects, colouring, &v))
         return NULL;
     PyObject *names_of = given(buffers) ? Py_NewRef(buffers) : Py_BuildValue("(s)", "rgba");
@@ -430,16 +494,23 @@ static PyObject *scene_pick(PyObject *self, PyObject *args, PyObject *keywords)
 static PyMethodDef scene_methods[] = {
     {"update", scene_update, METH_NOARGS,
      "update($self, /)\n--\n\nTake over what changed in the stock. Without it the next picture does."},
+    {"set_surface", WITH_KEYWORDS(scene_set_surface), METH_VARARGS | METH_KEYWORDS,
+     "set_surface($self, first, program, tools, moves=None, *, progress=None)\n--\n\n"
+     "Show the exact surface that the first moves (None: all) of a program make of the stock `first`, which the\n"
+     "scene's stock must have seen: sharp edges, true normals, and the moves that made them."},
+    {"set_moves", scene_set_moves, METH_O,
+     "set_moves($self, count, /)\n--\n\nHow many moves of the surface stand now; None: all."},
     {"set_fixtures", scene_set_fixtures, METH_O,
      "set_fixtures($self, meshes, /)\n--\n\nShow these Mesh objects beside the stock, in place of those before."},
     {"render", WITH_KEYWORDS(scene_render), METH_VARARGS | METH_KEYWORDS,
      "render($self, camera, width=1280, height=960, *, samples=3, coarse=1, budget_ms=0.0, buffers=None, "
-     "edges=True, occlusion=True, shadow=False, colour=None, background=None, background_top=None, "
+     "exact=True, edges=True, occlusion=True, shadow=False, colour=None, background=None, background_top=None, "
      "colouring='material', values=None, value_range=0.1, sections=None, cutter=None, program=None, moves_done=0.0, "
      "path=False, selected_line=0, outline=None, axes=0.0, progress=None)\n--\n\n"
      "A Picture. At edges samples x samples rays per pixel (1 .. 4); one ray for coarse x coarse pixels (1 .. 16), as\n"
      "many as it takes to be done in about budget_ms when that is given. buffers: what is wanted of rgba (None),\n"
-     "depth, normal, position, move and seen. edges: dark lines; occlusion: dark corners; shadow: of the light.\n"
+     "depth, normal, position, move and seen. exact: the surface of set_surface(), at rest; edges: dark lines; "
+     "occlusion: dark corners; shadow: of the light.\n"
      "Colours are linear, 0 .. 1: RGB of the material, RGBA of the background. colouring: material, operation, tool,\n"
      "age or feed of the program's moves, or deviation from `values`, width * height float32 in mm, +-value_range.\n"
      "sections: up to 6 (point, normal); what lies where a normal points to is taken away. cutter: (Cutter, tip).\n"

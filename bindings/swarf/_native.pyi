@@ -428,6 +428,19 @@ class Scene:
     def __new__(cls, stock: Stock) -> Scene: ...
     def update(self, /) -> None:
         """Take over what changed in the stock. Without it the next picture does."""
+    def set_surface(
+        self,
+        first: Stock,
+        program: Program,
+        tools: dict[int, Cutter],
+        moves: Optional[int] = None,
+        *,
+        progress: Progress = None,
+    ) -> None:
+        """Show the exact surface that the first moves (None: all) of a program make of the stock ``first``, which the
+        scene's stock must have seen: sharp edges, true normals, and the moves that made them."""
+    def set_moves(self, count: Optional[int], /) -> None:
+        """How many moves of the surface stand now; None: all."""
     def set_fixtures(self, meshes: Sequence[Mesh], /) -> None:
         """Show these Mesh objects beside the stock, in place of those before."""
     def render(
@@ -440,6 +453,7 @@ class Scene:
         coarse: int = 1,
         budget_ms: float = 0.0,
         buffers: Optional[Sequence[Buffers]] = None,
+        exact: bool = True,
         edges: bool = True,
         occlusion: bool = True,
         shadow: bool = False,
@@ -461,10 +475,11 @@ class Scene:
     ) -> Picture:
         """A Picture. At edges samples x samples rays per pixel (1 .. 4); one ray for coarse x coarse pixels (1 .. 16),
         as many as it takes to be done in about budget_ms when that is given. buffers: what is wanted (None: rgba).
-        edges: dark lines; occlusion: dark corners; shadow: of the light. Colours are linear, 0 .. 1: RGB of the
-        material, RGBA of the background. colouring: by the program's moves, or deviation from ``values``, width *
-        height float32 in mm, +-value_range. sections: up to 6 (point, normal); what lies where a normal points to is
-        taken away. cutter: (Cutter, tip). program, moves_done: what is played, and how far; path: show it.
+        exact: the surface of set_surface(); edges: dark lines; occlusion: dark corners; shadow: of the light. Colours
+        are linear, 0 .. 1: RGB of the material, RGBA of the background. colouring: by the program's moves, or
+        deviation from ``values``, width * height float32 in mm, +-value_range. sections: up to 6 (point, normal); what
+        lies where a normal points to is taken away. cutter: (Cutter, tip). program, moves_done: what is played, and how
+        far; path: show it.
         selected_line stands out. outline: a box; axes: mm of x, y, z."""
     def pick(
         self,

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/status.h"
+#include "render/refine.h"
 #include "render/vector.h"
 
 #include <stdlib.h>
@@ -51,14 +52,32 @@ static swarf_status look_tile(void *context, size_t index)
     return SWARF_OK;
 }
 
+/** Where the middle of square `index` lies. */
+static void place_of_middle(const void *context, size_t index, double place[2])
+{
+    const swarf_canvas *c = context;
+    place[0] = swarf_canvas_x(c, (int32_t)(index % (size_t)c->width), 0.5);
+    place[1] = swarf_canvas_y(c, (int32_t)(index / (size_t)c->width), 0.5);
+}
+
+/** Where the only ray of a pick goes. */
+static void place_of_pick(const void *context, size_t index, double place[2])
+{
+    (void)index;
+    memcpy(place, context, 2 * sizeof *place);
+}
+
 /** The parts of the progress by what they cost. */
-static const double looked = 0.3, lit = 0.6;
+static const double looked = 0.2, refined = 0.35, lit = 0.6;
 
 static swarf_status draw(swarf_canvas *c, const swarf_progress *progress)
 {
     const size_t count = (size_t)tiles(c->width) * (size_t)tiles(c->height);
     SWARF_TRY(swarf_parallel_for(count, look_tile, c, progress, 0, looked));
-    SWARF_TRY(swarf_canvas_light(c, progress, looked, lit));
+    if (c->options->exact)
+        SWARF_TRY(swarf_look_refine(&c->look, c->middle, (size_t)c->width * (size_t)c->height, place_of_middle, c,
+                                    progress, looked, refined));
+    SWARF_TRY(swarf_canvas_light(c, progress, refined, lit));
     SWARF_TRY(swarf_canvas_shade(c, progress, lit, 1));
     return swarf_canvas_lines(c);
 }
@@ -138,6 +157,7 @@ swarf_picture_options swarf_picture_options_default(void)
         .height = 960,
         .samples = 3,
         .coarse = 1,
+        .exact = 1,
         .edges = 1,
         .occlusion = 1,
         .colour = {0.63f, 0.62f, 0.62f},
@@ -244,8 +264,11 @@ swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, co
     swarf_look look = {0};
     swarf_sight sight;
     const double place[2] = {x, y}, xs[SWARF_PACKET] = {x}, ys[SWARF_PACKET] = {y};
-    const swarf_status status = swarf_look_begin(scene, camera, options, options->height, &look);
-    if (status == SWARF_OK) swarf_look_through(&look, xs, ys, 1, &sight);
+    swarf_status status = swarf_look_begin(scene, camera, options, options->height, &look);
+    if (status == SWARF_OK) {
+        swarf_look_through(&look, xs, ys, 1, &sight);
+        if (options->exact) status = swarf_look_refine(&look, &sight, 1, place_of_pick, place, NULL, 0, 1);
+    }
     swarf_look_end(&look);
     swarf_scene_leave(scene);
     SWARF_TRY(status);

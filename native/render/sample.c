@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/status.h"
 #include "render/picture.h"
+#include "render/refine.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -180,6 +181,17 @@ static swarf_status sample_some(void *context, size_t index)
     return SWARF_OK;
 }
 
+/** Where sample `index` of the strip lies. */
+static void place_of_sample(const void *context, size_t index, double place[2])
+{
+    const strip *s = context;
+    const swarf_canvas *c = s->canvas;
+    const int32_t n = c->options->samples, sub = (int32_t)(index % (size_t)(n * n));
+    const size_t square = s->rough[index / (size_t)(n * n)];
+    place[0] = swarf_canvas_x(c, (int32_t)(square % (size_t)c->width), (sub % n + 0.5) / n);
+    place[1] = swarf_canvas_y(c, (int32_t)(square / (size_t)c->width), (sub / n + 0.5) / n);
+}
+
 /** The sight of sample (i, j), counted over the whole strip; NULL beyond it. */
 static const swarf_sight *sight_at(const strip *s, int32_t i, int32_t j)
 {
@@ -241,6 +253,9 @@ static swarf_status shade_strip(strip *s)
     const size_t pieces = (s->rough_count + PIECE - 1) / PIECE;
     SWARF_TRY(swarf_parallel_for(rows, list_row, s, NULL, 0, 1));
     SWARF_TRY(swarf_parallel_for(pieces, sample_some, s, NULL, 0, 1));
+    if (s->canvas->options->exact)
+        SWARF_TRY(
+            swarf_look_refine(&s->canvas->look, s->sample, s->rough_count * samples, place_of_sample, s, NULL, 0, 1));
     return swarf_parallel_for(pieces, resolve_some, s, NULL, 0, 1);
 }
 

@@ -38,6 +38,8 @@ struct swarf_scene {
     size_t list_count;
     swarf_accel *accel;
     swarf_fixtures *fixtures; /* NULL: none */
+    swarf_surface *surface;   /* NULL: none */
+    size_t surface_moves;
     swarf_ray_space space;
     void *scratch;
     size_t scratch_size;
@@ -214,6 +216,7 @@ void swarf_scene_destroy(swarf_scene *scene)
     if (!scene) return;
     swarf_accel_destroy(scene->accel);
     swarf_fixtures_destroy(scene->fixtures);
+    swarf_surface_release(scene->surface);
     free_grid(scene);
     free(scene->list);
     free(scene->scratch);
@@ -263,6 +266,22 @@ swarf_status swarf_scene_set_fixtures(swarf_scene *scene, const swarf_triangles 
     swarf_fixtures_destroy(scene->fixtures);
     scene->fixtures = fixtures;
     return SWARF_OK;
+}
+
+swarf_status swarf_scene_set_surface(swarf_scene *scene, swarf_surface *surface, size_t moves)
+{
+    SWARF_REQUIRE(scene, "scene: missing");
+    if (surface) (void)swarf_surface_retain(surface);
+    swarf_surface_release(scene->surface);
+    scene->surface = surface;
+    scene->surface_moves = moves;
+    return SWARF_OK;
+}
+
+const swarf_surface *swarf_scene_surface(const swarf_scene *scene, size_t *moves)
+{
+    *moves = scene->surface_moves;
+    return scene->surface;
 }
 
 const swarf_fixtures *swarf_scene_fixtures(const swarf_scene *scene)

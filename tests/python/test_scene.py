@@ -131,3 +131,32 @@ def test_refusals(stock):
         scene.render(camera, 8, 8, buffers=("depth",)).write("never.png")
     with pytest.raises(swarf.Cancelled):
         scene.render(camera, progress=lambda fraction: True)
+
+
+def test_the_exact_surface_knows_its_moves():
+    first = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
+    stock = first.copy()
+    program = swarf.Program(start=(10, 20, 5))
+    program.add_operation("slot")
+    program.set_section(tool=1)
+    program.add_line((10, 20, -4), feed_mm_min=100)
+    program.add_line((50, 20, -4), feed_mm_min=100)
+    tools = {1: swarf.Cutter("flat:d=10,l=20")}
+    stock.simulate(program, tools)
+    scene = swarf.Scene(stock)
+    camera = swarf.Camera((30, 20, 50), (30, 20, 0), (0, 1, 0), height=60)
+    with pytest.raises(ValueError, match="no surface"):
+        scene.set_moves(1)
+    scene.set_surface(first, program, tools)
+    assert scene.pick(camera, 0, 0).move == 1
+    assert scene.pick(camera, 0, 0.8).move == -1
+    # Right at the edge, where the field is rounded: not the width of a hundredth of a voxel off.
+    edge = camera.project((30, 25 - 1e-3, 0))
+    assert scene.pick(camera, edge[0], edge[1]).point[2] == pytest.approx(-4, abs=1e-6)
+    picture = scene.render(camera, 60, 60, buffers=("rgba", "move"), colouring="operation", program=program)
+    assert picture.move[30, 30] == 1 and picture.rgba[30 * 60 + 30, 0] != picture.rgba[5 * 60 + 30, 0]
+    scene.set_moves(None)
+    with pytest.raises(BufferError):
+        program.add_line((0, 0, 0))
+    with pytest.raises(ValueError):
+        scene.set_moves(3)

@@ -3,7 +3,7 @@
 #ifndef SWARF_RENDER_H
 #define SWARF_RENDER_H
 
-#include "stock.h"
+#include "surface.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -72,6 +72,10 @@ SWARF_API swarf_status swarf_scene_create(swarf_stock *stock, swarf_scene **out)
 SWARF_API void swarf_scene_destroy(swarf_scene *scene);
 SWARF_API swarf_status swarf_scene_update(swarf_scene *scene);
 
+/** Show the stock as the exact surface (kept) that stands after its first `moves` moves, which must be those that the
+ *  stock has seen: pictures then have sharp edges and true normals, and know their moves. NULL: the field alone. */
+SWARF_API swarf_status swarf_scene_set_surface(swarf_scene *scene, swarf_surface *surface, size_t moves);
+
 /** Show these bodies beside the stock, in place of those before; count 0: none. The triangles are copied.
  *  SWARF_ERROR_ARGUMENT for a vertex number out of range or a coordinate that is not finite. */
 SWARF_API swarf_status swarf_scene_set_fixtures(swarf_scene *scene, const swarf_triangles *triangles, size_t count);
@@ -121,6 +125,7 @@ typedef struct swarf_picture_options {
     int32_t coarse;      /**< 1 .. 16: one ray for coarse * coarse pixels, while things move */
     double budget_ms;    /**< > 0: as coarse as needed to be done in about this time, judged by the pictures before; the
                               picture then depends on the clock. `coarse` is the least. */
+    int32_t exact;       /**< 1: the exact surface, where the scene has one; 0: the field alone, for speed */
     int32_t edges;       /**< 1: dark lines where faces meet or one hides the other */
     int32_t occlusion;   /**< 1: corners and pockets are darker, as under an overcast sky */
     int32_t shadow;      /**< 1: the light casts shadows */

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Sights onto the exact surface: sharp edges, true normals, and which move made what is seen. */
+#ifndef SWARF_RENDER_REFINE_H
+#define SWARF_RENDER_REFINE_H
+
+#include "render/look.h"
+
+/** Place (-1 .. 1) in the picture of the ray of sight `index`. */
+typedef void (*swarf_place_fn)(const void *context, size_t index, double place[2]);
+
+/** Move those of `count` sights that see the stock along their rays onto the scene's exact surface, where it has one;
+ *  nothing without. All cores; not from within a piece of parallel work. */
+swarf_status swarf_look_refine(const swarf_look *look, swarf_sight *sights, size_t count, swarf_place_fn place,
+                               const void *context, const swarf_progress *progress, double from, double to);
+
+#endif

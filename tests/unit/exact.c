@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Pictures on the exact surface: a block with a flat slot, whose every face is a formula. */
+#include <math.h>
+#include <string.h>
+
+#include "test.h"
+
+static const double voxel = 0.5;
+static const swarf_box block = {{0, 0, 0}, {40, 30, 20}};
+
+/** Signed distances at a point to the seven pieces: the box's faces and, above floor and within the wall, the slot. */
+static double value_at(const double p[3], double normal[3], int *cut)
+{
+    double value = -INFINITY;
+    memset(normal, 0, 3 * sizeof *normal);
+    *cut = 0;
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = 0; side < 2; side++) {
+            const double off = side ? p[axis] - block.hi[axis] : block.lo[axis] - p[axis];
+            if (off <= value) continue;
+            value = off;
+            memset(normal, 0, 3 * sizeof *normal);
+            normal[axis] = side ? 1 : -1;
+        }
+    const double near = fmin(fmax(p[0], 10), 30), dx = p[0] - near, dy = p[1] - 15, rho = hypot(dx, dy);
+    const double wall = 5 - rho, floor = p[2] - 12, slot = fmin(wall, floor);
+    if (slot <= value) return value;
+    *cut = 1;
+    memset(normal, 0, 3 * sizeof *normal);
+    normal[2] = floor < wall;
+    if (floor >= wall) {
+        normal[0] = -dx / rho;
+        normal[1] = -dy / rho;
+    }
+    return slot;
+}
+
+static swarf_scene *make_scene(swarf_stock **stock)
+{
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = voxel;
+    const double start[3] = {10, 15, 12}, end[3] = {30, 15, 12};
+    swarf_cutter *cutter = NULL;
+    swarf_program *program = NULL;
+    swarf_surface *surface = NULL;
+    swarf_scene *scene = NULL;
+    swarf_path path;
+    CHECK_OK(swarf_cutter_parse("flat:d=10,l=30", &cutter));
+    CHECK_OK(swarf_program_create(start, &program));
+    const swarf_section section = {.tool = 4};
+    CHECK(swarf_program_add_operation(program, "slot") >= 0);
+    CHECK_OK(swarf_program_set_section(program, &section));
+    CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_FEED, end, 100, 1));
+    CHECK_OK(swarf_program_path(program, 0, &path));
+    const swarf_tool tool = {.number = 4, .cutter = cutter};
+    CHECK_OK(swarf_stock_create_box(&block, &options, stock));
+    CHECK_OK(swarf_surface_create(*stock, program, &tool, 1, NULL, &surface));
+    CHECK_OK(swarf_stock_cut(*stock, cutter, &path, 1, NULL));
+    CHECK_OK(swarf_scene_create(*stock, &scene));
+    CHECK_OK(swarf_scene_set_surface(scene, surface, 1));
+    swarf_surface_release(surface);
+    swarf_program_release(program);
+    swarf_cutter_release(cutter);
+    return scene;
+}
+
+int main(void)
+{
+    test_random random = test_random_begin(53);
+    swarf_stock *stock = NULL;
+    swarf_scene *scene = make_scene(&stock);
+    swarf_picture_options options = swarf_picture_options_default();
+    int seen = 0, off = 0, turned = 0, wrong = 0;
+    for (int trial = 0; scene && trial < 20000; trial++) {
+        swarf_camera camera = {.perspective = trial & 1, .fov_deg = 30, .height_mm = 60, .up = {0.1, 0.3, 1}};
+        for (int i = 0; i < 3; i++) {
+            camera.target[i] = test_random_in(&random, block.lo[i], block.hi[i]);
+            camera.eye[i] =
+                camera.target[i] + (i < 2 ? test_random_in(&random, -60, 60) : test_random_in(&random, 30, 90));
+        }
+        swarf_pick pick;
+        if (!CHECK_OK(swarf_scene_pick(scene, &camera, &options, 0, 0, &pick))) break;
+        if (pick.seen != SWARF_SEEN_STOCK) continue;
+        double normal[3], cosine = 0;
+        int cut;
+        const double value = value_at(pick.point, normal, &cut);
+        seen++;
+        if (fabs(value) > 1e-3 * voxel) {
+            off++;
+            continue;
+        }
+        for (int i = 0; i < 3; i++) cosine += normal[i] * pick.normal[i];
+        turned += !(cosine > cos(0.1 * 3.14159265358979 / 180));
+        wrong += pick.move != (cut ? 0 : -1);
+    }
+    CHECK(seen > 15000);
+    /* Rays past an edge by less than the field cuts off it keep the field's hit. */
+    CHECK(off <= seen / 1000);
+    CHECK(turned <= seen / 1000);
+    CHECK(wrong <= seen / 1000);
+    swarf_scene_destroy(scene);
+    swarf_stock_destroy(stock);
+    return test_end();
+}
