@@ -8,7 +8,7 @@ import time
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Sequence
 
-from ._native import Comparison, GeometryError, Mesh, Simulation, Stock, compare_volume
+from ._native import Camera, Comparison, GeometryError, Mesh, Scene, Simulation, Stock, compare_volume
 from .job import Job
 
 #: Voxels along the longest edge of the stock where nobody says how fine: fast on any machine, and fine enough to see.
@@ -152,6 +152,10 @@ def simulate(
 
     started = time.perf_counter()
     stock = timed("stock", lambda report: make_stock(job.stock, voxel=voxel, resolution=resolution, progress=report))
+    scene = None
+    if picture is not None:  # before the cut: the exact surface begins with the stock as it was
+        scene = Scene(stock)
+        scene.set_surface(stock, job.program, job.tools)
     simulation = timed("cut", lambda report: stock.simulate(job.program, job.tools, batch=batch, progress=report))
     result = Result(job, stock, simulation, seconds=seconds)
     if compare and job.design is not None:
@@ -163,7 +167,8 @@ def simulate(
         timed("write", lambda report: written.write(path, progress=report))
     if picture is not None:
         width, height = picture_size
-        timed("picture", lambda report: stock.picture(picture, width, height, view=view, progress=report))
+        camera = Camera.view(view, stock.bounding_box(), width / height)
+        timed("picture", lambda report: scene.render(camera, width, height, progress=report).write(picture))
     seconds["total"] = time.perf_counter() - started
     return result
 
