@@ -131,6 +131,25 @@ class Check:
         self.settle()
         return self.panel.view.image()
 
+    def preferences(self):
+        """What the page shows is kept, and what was kept is shown."""
+        from freecad.swarf_cam.gui import preferences
+
+        page = preferences.Page()
+        page.loadSettings()
+        assert page.resolution.value() == self.settings.RESOLUTION and not page.flags["AutoPlay"].isChecked()
+        page.form.show()
+        screenshot("preferences.png")
+        page.resolution.setValue(500)
+        page.flags["Shadow"].setChecked(True)
+        page.saveSettings()
+        other = preferences.Page()
+        other.loadSettings()
+        assert other.resolution.value() == 500 and other.flags["Shadow"].isChecked()
+        self.settings.set_resolution(self.settings.RESOLUTION)
+        self.settings.set_flag("Shadow", False)
+        page.form.close()
+
     def opening(self, document, job):
         """By the command, with the job selected."""
         Gui.Selection.addSelection(document.Name, job.Name)
@@ -270,16 +289,14 @@ class Check:
         screenshot("panel-wide.png")
         panel.findChild(type(panel._icons["path"]), "Swarf-path").setChecked(False)
         application = QtWidgets.QApplication.instance()
-        light, style = application.palette(), application.styleSheet()
-        dark = QtGui.QPalette(QtGui.QColor(53, 57, 62), QtGui.QColor(40, 43, 47))
-        application.setPalette(dark)
+        style = application.styleSheet()
+        application.setStyleSheet("QWidget { background-color: #35393e; color: #f0f0f0 }")  # as FreeCAD's themes are
         panel.colouring.setCurrentIndex(1)
         panel.seek(panel.transport.end)
         self.settle()
         screenshot("panel-dark.png")
         corner = panel.view.image().pixelColor(3, 3)
         assert corner.lightness() < 100, "the background follows a dark theme"
-        application.setPalette(light)
         application.setStyleSheet(style)
         panel.colouring.setCurrentIndex(0)
         panel.setFloating(False)
@@ -465,7 +482,7 @@ def check():
     Gui.activateWorkbench("SwarfWorkbench")
     Gui.ActiveDocument.ActiveView.viewIsometric()
     Gui.SendMsgToActiveView("ViewFit")
-    for step, arguments in ((check.opening, (document, job)), (check.transporting, ()), (check.steering, ()),
+    for step, arguments in ((check.preferences, ()), (check.opening, (document, job)), (check.transporting, ()), (check.steering, ()),
                             (check.looking, (document, job)),
                             (check.clicking, (document,)), (check.accuracy, ()), (check.outputs, (document,)),
                             (check.bad_moments, (document, job)), (check.closing, ())):

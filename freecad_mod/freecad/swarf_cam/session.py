@@ -118,6 +118,7 @@ class Session:
                       STOP_FINDING: sorted({place for place, _, _ in self.overview.findings})}
         self._scene, self._scene_of = None, None
         self._coarse = 1
+        self._exact = hasattr(swarf.Scene, "set_surface")  # the native module can show more than the voxels
 
     def _runs(self):
         """(first move, tool) of each run of moves with one tool."""
@@ -161,6 +162,10 @@ class Session:
         if self._scene_of is not self._playback.stock:
             self._scene_of = self._playback.stock
             self._scene = self._swarf.Scene(self._scene_of)
+            if self._exact:
+                self._scene.set_surface(self._playback.first, self.program, self.tools)
+        if self._exact:
+            self._scene.set_moves(self._playback.at)
         return self._scene
 
     def _look(self, view, place):
@@ -182,7 +187,9 @@ class Session:
         else:
             look.update(samples=1, coarse=self._coarse)
             # coarse rays make steps of the edges' lines
-            off = ("occlusion", "shadow") if self._coarse == 1 else ("occlusion", "shadow", "edges")
+            off = {"occlusion", "shadow"} | ({"edges"} if self._coarse > 1 else set())
+            if look.get("colouring") == "material":  # the other colours are those of the moves, which only it knows
+                off.add("exact")
             look.update((name, False) for name in off if name in self._keywords)
         started = time.monotonic()
         picture = self._current_scene().render(view.camera, view.width, view.height, buffers=("rgba", "depth"),

@@ -29,6 +29,11 @@ class Playback:
         self.stock = start
         self.at = 0
 
+    @property
+    def first(self):
+        """The stock before the first move; only to be read."""
+        return self._copies[0]
+
     def keep(self):
         """Keep a copy of the stock as it stands, when memory allows."""
         held = self.stock.size()[1]

@@ -35,5 +35,6 @@ class Inspector(QtWidgets.QWidget):
         """Texts by row; rows without one are emptied. None: nothing was hit."""
         self.hint.setText(translate("Swarf", "Click on the stock to learn which line cut it.") if values is None
                           else values.get("hint", ""))
+        self.hint.setVisible(bool(self.hint.text()))
         for key, label in self._rows.items():
             label.setText((values or {}).get(key, "–"))

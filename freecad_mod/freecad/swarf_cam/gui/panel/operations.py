@@ -21,7 +21,6 @@ class OperationList(QtWidgets.QTreeWidget):
         self.setObjectName("SwarfOperations")
         self.setRootIsDecorated(False)
         self.setUniformRowHeights(True)
-        self.setAlternatingRowColors(True)
         self.setHeaderLabels([translate("Swarf", "Operation"), translate("Swarf", "Tool"), translate("Swarf", "Time"),
                               translate("Swarf", "Removed")])
         self.setToolTip(translate("Swarf", "Click: go to the operation. The box shows its path in the 3D view."))
