@@ -74,24 +74,60 @@ swarf_vdb_leaf *leaf_of(const swarf_tree *tree, size_t node, unsigned slot)
     return const_cast<swarf_vdb_leaf *>(holder->getTable()[slot].getChild());
 }
 
-/* Cutting makes and unmakes many leaves; those that go wait here for those that come, as memory at hand is faster than
- * the allocator's. 2 MiB a thread at most, freed with it. */
+/* OpenVDB has no way to give a leaf a buffer of one's own, so this reaches its private pointer (an explicit
+ * instantiation may name it). Only leaves of our trees hold such buffers, and take_buffer() has them back before
+ * OpenVDB could free them; copies of a tree, which its tools work on, have buffers of OpenVDB's. */
+struct buffer_data {
+    using type = float *openvdb::tree::LeafBuffer<float, 3>::*;
+    friend type expose(buffer_data);
+};
+template <buffer_data::type Member> struct exposed {
+    friend buffer_data::type expose(buffer_data)
+    {
+        return Member;
+    }
+};
+template struct exposed<&openvdb::tree::LeafBuffer<float, 3>::mData>;
+
+float *&data_of(swarf_vdb_leaf &leaf)
+{
+    return leaf.buffer().*expose(buffer_data());
+}
+
+/* Give a leaf's buffer back to the slab, if it came from there. */
+bool take_buffer(swarf_tree &tree, swarf_vdb_leaf &leaf) noexcept
+{
+    float *&data = data_of(leaf);
+    if (leaf.buffer().isOutOfCore() || !data || !tree.slab->owns(data)) return false;
+    tree.slab->give(data);
+    data = nullptr;
+    return true;
+}
+
+/* Cutting makes and unmakes many leaves; those that go wait here, without buffers, for those that come, as memory at
+ * hand is faster than the allocator's. 100 KiB a thread at most, freed with it. */
 constexpr size_t most_spares = 1024;
 thread_local std::vector<std::unique_ptr<swarf_vdb_leaf>> spares;
 
-std::unique_ptr<swarf_vdb_leaf> take_leaf(const Coord &corner)
+std::unique_ptr<swarf_vdb_leaf> take_leaf(swarf_tree &tree, const Coord &corner)
 {
-    if (!spares.empty()) {
-        std::unique_ptr<swarf_vdb_leaf> leaf = std::move(spares.back());
+    if (spares.capacity() == 0) spares.reserve(most_spares); /* here, where running out of memory can be told */
+    std::unique_ptr<swarf_vdb_leaf> leaf;
+    if (spares.empty()) {
+        /* PartialCreate: no buffer is filled only to be overwritten. */
+        leaf = std::make_unique<swarf_vdb_leaf>(openvdb::PartialCreate(), corner, 0.0f, false);
+    } else {
+        leaf = std::move(spares.back());
         spares.pop_back();
         leaf->setOrigin(corner);
-        return leaf;
     }
-    /* PartialCreate: no buffer is filled only to be overwritten. */
-    if (spares.capacity() == 0) spares.reserve(most_spares); /* here, where running out of memory can be told */
-    auto leaf = std::make_unique<swarf_vdb_leaf>(openvdb::PartialCreate(), corner, 0.0f, false);
-    leaf->buffer().allocate();
+    data_of(*leaf) = tree.slab->take();
     return leaf;
+}
+
+void drop_leaf(swarf_tree &tree, std::unique_ptr<swarf_vdb_leaf> leaf) noexcept
+{
+    if (take_buffer(tree, *leaf) && spares.size() < spares.capacity()) spares.push_back(std::move(leaf));
 }
 
 /* The cube of a slot is its number without the low two bits of x, y and z. */
@@ -109,6 +145,15 @@ void set_mask(swarf_vdb_leaf &leaf, const uint64_t mask[8])
 }
 
 } // namespace
+
+swarf_tree::~swarf_tree()
+{
+    for (swarf_vdb_node *node : nodes)
+        if (node) /* not all are made when memory ran out */
+            for (auto leaf = node->beginChildOn(); leaf; ++leaf) take_buffer(*this, *leaf);
+    /* Node by node: ~Tree() makes lists of them first, and ends the program when there is no memory for the lists. */
+    if (grid) grid->tree().root().clear();
+}
 
 swarf_tree *swarf_tree_adopt(const openvdb::FloatGrid::Ptr &grid)
 {
@@ -166,10 +211,15 @@ extern "C" swarf_status swarf_tree_create(double voxel, const double origin[3], 
 extern "C" swarf_status swarf_tree_copy(const swarf_tree *tree, swarf_tree **out)
 {
     return swarf_guard("stock", [&]() -> swarf_status {
-        auto copy = std::make_unique<swarf_tree>(*tree);
+        auto copy = std::make_unique<swarf_tree>();
+        copy->layout = tree->layout;
+        copy->base = tree->base;
+        copy->occupied = tree->occupied;
+        copy->stamps = tree->stamps;
         copy->grid = tree->grid->deepCopy();
         copy->layout.occupied = copy->occupied.data();
         copy->layout.stamps = copy->stamps.data();
+        copy->nodes.resize(tree->nodes.size());
         for (size_t node = 0; node < copy->nodes.size(); node++)
             copy->nodes[node] = copy->grid->tree().probeNode<swarf_vdb_node>(tree->nodes[node]->origin());
         *out = copy.release();
@@ -179,8 +229,6 @@ extern "C" swarf_status swarf_tree_copy(const swarf_tree *tree, swarf_tree **out
 
 extern "C" void swarf_tree_destroy(swarf_tree *tree)
 {
-    /* Node by node: ~Tree() makes lists of them first, and ends the program when there is no memory for the lists. */
-    if (tree && tree->grid) tree->grid->tree().root().clear();
     delete tree;
 }
 
@@ -216,9 +264,12 @@ extern "C" swarf_status swarf_tree_leaf_add(swarf_tree *tree, size_t node, unsig
 {
     return swarf_guard("stock", [&]() -> swarf_status {
         swarf_vdb_node &holder = *tree->nodes[node];
-        auto leaf = take_leaf(slot_corner(holder, slot));
+        auto leaf = take_leaf(*tree, slot_corner(holder, slot));
         std::memcpy(leaf->buffer().data(), values, SWARF_LEAF_SIZE * sizeof(float));
         set_mask(*leaf, mask);
+        if (holder.getChildMask().isOn(slot))
+            drop_leaf(*tree, std::unique_ptr<swarf_vdb_leaf>(
+                                 holder.stealNode<swarf_vdb_leaf>(slot_corner(holder, slot), 0.0f, false)));
         holder.addLeaf(leaf.release());
         stamp(tree, node, slot);
         tree->layout.occupied[node * SWARF_NODE_WORDS + (slot >> 6)] |= uint64_t(1) << (slot & 63);
@@ -236,8 +287,9 @@ extern "C" void swarf_tree_tile(swarf_tree *tree, size_t node, unsigned slot, in
 {
     const float value = inside ? -tree->layout.background : tree->layout.background;
     swarf_vdb_node &holder = *tree->nodes[node];
-    if (spares.size() < spares.capacity() && holder.getChildMask().isOn(slot))
-        spares.emplace_back(holder.stealNode<swarf_vdb_leaf>(slot_corner(holder, slot), value, false));
+    if (holder.getChildMask().isOn(slot))
+        drop_leaf(*tree, std::unique_ptr<swarf_vdb_leaf>(
+                             holder.stealNode<swarf_vdb_leaf>(slot_corner(holder, slot), value, false)));
     else
         holder.addTile(Index(slot), value, false);
     stamp(tree, node, slot);

@@ -3,10 +3,12 @@
 #ifndef SWARF_STOCK_VDB_TREE_HPP
 #define SWARF_STOCK_VDB_TREE_HPP
 
+#include "stock/vdb_slab.hpp"
 #include "stock/vdb_tree.h"
 
 #include <openvdb/openvdb.h>
 
+#include <memory>
 #include <vector>
 
 using swarf_vdb_node = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType; /* 16^3 slots */
@@ -19,6 +21,12 @@ struct swarf_tree {
     std::vector<swarf_vdb_node *> nodes;
     std::vector<uint64_t> occupied;
     std::vector<uint32_t> stamps;
+    std::unique_ptr<swarf_slab> slab = std::make_unique<swarf_slab>(); /* buffers of the leaves that cutting made */
+
+    swarf_tree() = default;
+    swarf_tree(const swarf_tree &) = delete;
+    swarf_tree &operator=(const swarf_tree &) = delete;
+    ~swarf_tree();
 };
 
 /** Take over a level-set grid of half width 3 (uniform voxels, no rotation): every 128^3 node that its bounding box
