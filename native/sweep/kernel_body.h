@@ -471,7 +471,7 @@ static __attribute__((noinline)) void cylinder_seam(float m, float radius, lanes
     const lanes chord2 = maximum(all(0), all(radius * radius) - w * w), chord = root(chord2);
     const lanes scale = chord / root(chord2 + m * m * radius * radius);
     const struct slant top = slant_at(aside, chord, scale, m, radius);
-    const struct slant beyond = slant_at(aside, chord, all(1), m, radius);
+    const struct slant beyond = seam ? slant_at(aside, chord, all(1), m, radius) : top;
     const lanes at = s * m + bottom;
     for (int z = 0; z < 8; z++) {
         lanes under = slant_value(&top, at - (float)z);
