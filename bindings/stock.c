@@ -35,12 +35,18 @@ static void stock_dealloc(PyObject *self)
 
 /* ---- making ---- */
 
-static swarf_stock_options stock_options(double voxel, Py_ssize_t memory_limit)
+/* -1 with ValueError when the limit is none. */
+static int stock_options(double voxel, Py_ssize_t memory_limit, swarf_stock_options *out)
 {
-    swarf_stock_options options = swarf_stock_options_default();
-    options.voxel_mm = voxel;
-    options.memory_limit = memory_limit > 0 ? (size_t)memory_limit : 0;
-    return options;
+    if (memory_limit < 0) {
+        PyErr_Format(PyExc_ValueError, "memory_limit %zd is negative; give bytes, 0 for most of what is free",
+                     memory_limit);
+        return -1;
+    }
+    *out = swarf_stock_options_default();
+    out->voxel_mm = voxel;
+    out->memory_limit = (size_t)memory_limit;
+    return 0;
 }
 
 static PyObject *stock_box(PyObject *type, PyObject *args, PyObject *keywords)
@@ -50,10 +56,10 @@ static PyObject *stock_box(PyObject *type, PyObject *args, PyObject *keywords)
     double voxel;
     Py_ssize_t limit = 0;
     swarf_box box;
+    swarf_stock_options options;
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOd|$n:box", names, &lo, &hi, &voxel, &limit) ||
-        buffer_point(lo, "lo", box.lo) || buffer_point(hi, "hi", box.hi))
+        buffer_point(lo, "lo", box.lo) || buffer_point(hi, "hi", box.hi) || stock_options(voxel, limit, &options))
         return NULL;
-    const swarf_stock_options options = stock_options(voxel, limit);
     native_call call;
     swarf_stock *handle = NULL;
     call_begin(&call, NULL);
@@ -67,11 +73,12 @@ static PyObject *stock_cylinder(PyObject *type, PyObject *args, PyObject *keywor
     PyObject *base_object, *axis_object;
     double radius, voxel, base[3], axis[3];
     Py_ssize_t limit = 0;
+    swarf_stock_options options;
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOdd|$n:cylinder", names, &base_object, &axis_object, &radius,
                                      &voxel, &limit) ||
-        buffer_point(base_object, "base", base) || buffer_point(axis_object, "axis", axis))
+        buffer_point(base_object, "base", base) || buffer_point(axis_object, "axis", axis) ||
+        stock_options(voxel, limit, &options))
         return NULL;
-    const swarf_stock_options options = stock_options(voxel, limit);
     native_call call;
     swarf_stock *handle = NULL;
     call_begin(&call, NULL);
@@ -88,7 +95,8 @@ static PyObject *stock_from_mesh(PyObject *type, PyObject *args, PyObject *keywo
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!d|$nO:from_mesh", names,
                                      state_of_type((PyTypeObject *)type)->mesh, &mesh, &voxel, &limit, &progress))
         return NULL;
-    const swarf_stock_options options = stock_options(voxel, limit);
+    swarf_stock_options options;
+    if (stock_options(voxel, limit, &options)) return NULL;
     native_call call;
     if (call_begin(&call, progress)) return NULL;
     const swarf_triangles triangles = swarf_mesh_triangles(((mesh_object *)mesh)->handle);

@@ -35,6 +35,7 @@ struct player {
     size_t first, count, batch;
     swarf_path *paths;
     size_t path_room;
+    size_t *cuts; /* per operation: 1 + the first move that had a tool to cut with, 0: none */
 };
 
 swarf_simulation_options swarf_simulation_options_default(void)
@@ -79,25 +80,29 @@ const swarf_finding *swarf_simulation_findings(const swarf_simulation *simulatio
     return simulation ? simulation->findings : NULL;
 }
 
-/* An error at a move; NULL in *out when the operation has one for this tool already. */
-static swarf_status add_finding(struct player *player, size_t move, const swarf_section *section, swarf_finding **out)
+/* A finding at a move, its text still to be written. */
+static swarf_status add_finding(struct player *player, swarf_severity severity, size_t move, swarf_finding **out)
 {
     swarf_simulation *result = player->result;
+    const swarf_move *at = &swarf_program_moves(player->program)[move];
+    const swarf_section *section = &swarf_program_sections(player->program)[swarf_move_get_section(at)];
+    SWARF_TRY(swarf_array_reserve((void **)&result->findings, &result->finding_room, result->finding_count + 1,
+                                  sizeof *result->findings));
+    *out = &result->findings[result->finding_count++];
+    **out = (swarf_finding){
+        .severity = severity, .operation = section->operation, .move = move, .line = at->line, .tool = section->tool};
+    return SWARF_OK;
+}
+
+/* An error at a move; NULL in *out when the operation has one for this tool already. */
+static swarf_status add_error(struct player *player, size_t move, const swarf_section *section, swarf_finding **out)
+{
+    const swarf_simulation *result = player->result;
     *out = NULL;
     for (size_t i = 0; i < result->finding_count; i++)
         if (result->findings[i].tool == section->tool && result->findings[i].operation == section->operation)
             return SWARF_OK;
-    SWARF_TRY(swarf_array_reserve((void **)&result->findings, &result->finding_room, result->finding_count + 1,
-                                  sizeof *result->findings));
-    swarf_finding *finding = &result->findings[result->finding_count++];
-    memset(finding, 0, sizeof *finding);
-    finding->severity = SWARF_ERROR;
-    finding->operation = section->operation;
-    finding->move = move;
-    finding->line = swarf_program_moves(player->program)[move].line;
-    finding->tool = section->tool;
-    *out = finding;
-    return SWARF_OK;
+    return add_finding(player, SWARF_ERROR, move, out);
 }
 
 static const char *operation_of(const struct player *player, const swarf_section *section)
@@ -110,7 +115,7 @@ static const char *operation_of(const struct player *player, const swarf_section
 static swarf_status report_tool(struct player *player, size_t move, const swarf_section *section, const char *what)
 {
     swarf_finding *finding;
-    SWARF_TRY(add_finding(player, move, section, &finding));
+    SWARF_TRY(add_error(player, move, section, &finding));
     if (!finding) return SWARF_OK;
     const char *operation = operation_of(player, section);
     if (section->tool < 0)
@@ -129,7 +134,7 @@ static swarf_status check_axes(struct player *player, size_t move, const swarf_s
     *turned = swarf_program_move_axes(player->program, move, from, to);
     if (!*turned) return SWARF_OK;
     swarf_finding *finding;
-    SWARF_TRY(add_finding(player, move, section, &finding));
+    SWARF_TRY(add_error(player, move, section, &finding));
     if (!finding) return SWARF_OK;
     int axis = 0;
     while (axis < 5 && from[axis] == 0.0 && to[axis] == 0.0) axis++;
@@ -173,6 +178,8 @@ static swarf_status play_batch(struct player *player, size_t first, size_t end, 
     const swarf_body *body = NULL;
     if (used) SWARF_TRY(find_body(player, first_moving, section, &body));
     if (!body) return swarf_progress_report(player->progress, to);
+    size_t *cuts = section->operation >= 0 ? &player->cuts[section->operation] : NULL;
+    if (cuts && *cuts == 0) *cuts = first_moving + 1;
     return swarf_cut_body(player->stock, body, player->paths, used, player->progress, from, to);
 }
 
@@ -182,6 +189,22 @@ static swarf_status account(struct player *player, double *volume, double *remov
     SWARF_TRY(swarf_measure_volume(player->stock, &now));
     *removed += *volume - now;
     *volume = now;
+    return SWARF_OK;
+}
+
+/* Say which operations had a tool and moves but removed nothing: the origin or the order may be wrong. */
+static swarf_status report_idle(struct player *player)
+{
+    const swarf_simulation *result = player->result;
+    const double voxel = swarf_stock_voxel(player->stock), least = 1e-3 * voxel * voxel * voxel;
+    for (size_t i = 0; i < result->operation_count; i++) {
+        if (player->cuts[i] == 0 || result->removed[i] > least) continue;
+        swarf_finding *finding;
+        SWARF_TRY(add_finding(player, SWARF_NOTE, player->cuts[i] - 1, &finding));
+        snprintf(finding->text, sizeof finding->text,
+                 "operation '%.80s' removes nothing: its moves do not meet what is left of the stock",
+                 swarf_program_operation_name(player->program, i));
+    }
     return SWARF_OK;
 }
 
@@ -212,7 +235,8 @@ static swarf_status play(struct player *player)
         i = end;
     }
     result->final = volume;
-    return SWARF_OK;
+    /* of a part of a program nobody can say what the rest does */
+    return player->count == swarf_program_move_count(player->program) ? report_idle(player) : SWARF_OK;
 }
 
 swarf_status swarf_stock_simulate(swarf_stock *stock, const swarf_program *program, size_t first, size_t count,
@@ -239,6 +263,7 @@ swarf_status swarf_stock_simulate(swarf_stock *stock, const swarf_program *progr
     swarf_simulation *result = calloc(1, sizeof *result);
     player.result = result;
     player.bodies = calloc(tool_count ? tool_count : 1, sizeof *player.bodies);
+    player.cuts = calloc(swarf_program_operation_count(program) + 1, sizeof *player.cuts);
     swarf_status status = SWARF_OK;
     if (result) {
         result->operation_count = swarf_program_operation_count(program);
@@ -246,11 +271,12 @@ swarf_status swarf_stock_simulate(swarf_stock *stock, const swarf_program *progr
         result->per_move_count = per_move ? count : 0;
         if (per_move) result->per_move = calloc(count + 1, sizeof *result->per_move);
     }
-    if (!result || !player.bodies || !result->removed || (per_move && !result->per_move))
+    if (!result || !player.bodies || !player.cuts || !result->removed || (per_move && !result->per_move))
         status = swarf_fail(SWARF_ERROR_MEMORY, "simulation: out of memory");
     if (status == SWARF_OK) status = play(&player);
     for (size_t i = 0; player.bodies && i < tool_count; i++) swarf_body_destroy(player.bodies[i]);
     free(player.bodies);
+    free(player.cuts);
     free(player.paths);
     swarf_stock_leave(stock);
     if (status != SWARF_OK) {

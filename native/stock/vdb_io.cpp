@@ -215,6 +215,42 @@ swarf_status normalise(openvdb::FloatGrid::Ptr &grid, const char *path, double v
     return SWARF_OK;
 }
 
+/* Refuse solid blocks whose neighbour is an empty one: the surface between them has no band, so that nothing could be
+ * cut, measured or meshed there. */
+swarf_status check_band(const swarf_tree &tree, const char *path)
+{
+    enum { OUTSIDE, INSIDE, BAND };
+    const int32_t *count = tree.layout.count;
+    const auto kind = [&](const int32_t at[3]) {
+        for (int k = 0; k < 3; k++)
+            if (at[k] < 0 || at[k] >= count[k] * 16) return OUTSIDE;
+        const size_t node =
+            (static_cast<size_t>(at[0] / 16) * static_cast<size_t>(count[1]) + static_cast<size_t>(at[1] / 16)) *
+                static_cast<size_t>(count[2]) +
+            static_cast<size_t>(at[2] / 16);
+        const auto slot = static_cast<unsigned>((at[0] % 16) << 8 | (at[1] % 16) << 4 | (at[2] % 16));
+        if (!(tree.occupied[node * SWARF_NODE_WORDS + (slot >> 6)] >> (slot & 63) & 1)) return OUTSIDE;
+        return swarf_tree_leaf(&tree, node, slot) ? BAND : INSIDE;
+    };
+    int32_t at[3];
+    for (at[0] = 0; at[0] < count[0] * 16; at[0]++)
+        for (at[1] = 0; at[1] < count[1] * 16; at[1]++)
+            for (at[2] = 0; at[2] < count[2] * 16; at[2]++) {
+                if (kind(at) != INSIDE) continue;
+                for (int side = 0; side < 6; side++) {
+                    int32_t next[3] = {at[0], at[1], at[2]};
+                    next[side / 2] += side % 2 ? 1 : -1;
+                    if (kind(next) == OUTSIDE)
+                        return swarf_fail(SWARF_ERROR_FORMAT,
+                                          "%s: not a narrow band: solid without a surface at %g %g %g mm", path,
+                                          tree.layout.origin[0] + at[0] * 8 * tree.layout.voxel,
+                                          tree.layout.origin[1] + at[1] * 8 * tree.layout.voxel,
+                                          tree.layout.origin[2] + at[2] * 8 * tree.layout.voxel);
+                }
+            }
+    return SWARF_OK;
+}
+
 } // namespace
 
 extern "C" swarf_status swarf_vdb_unpack(const void *chunk, size_t chunk_bytes, uint32_t compression, size_t bytes)
@@ -260,7 +296,9 @@ extern "C" swarf_status swarf_stock_read(const char *path, const swarf_progress 
                               static_cast<long long>(ftello(file.get())), error.what());
         }
         SWARF_TRY(swarf_arena_run([&] { return normalise(grid, path, voxel); }));
-        return swarf_stock_wrap(swarf_tree_adopt(grid), out);
+        std::unique_ptr<swarf_tree> tree(swarf_tree_adopt(grid));
+        SWARF_TRY(check_band(*tree, path));
+        return swarf_stock_wrap(tree.release(), out);
     });
 }
 

@@ -30,6 +30,8 @@ def test_voxels_that_do_not_fit_into_memory(voxel):
 def test_memory_limit():
     with pytest.raises(MemoryError, match="voxel"):
         swarf.Stock.box(LO, HI, 0.1, memory_limit=1000)
+    with pytest.raises(ValueError, match="memory_limit -5 is negative"):
+        swarf.Stock.box(LO, HI, 0.1, memory_limit=-5)
 
 
 @pytest.mark.parametrize("text", ["", "flat", "flat:", "flat:d=3", "flat:d=x,l=5", "cube:d=3,l=5", "flat:d=3,l=18,q=1"])

@@ -110,7 +110,8 @@ typedef struct swarf_simulation swarf_simulation;
 
 /** Play moves first .. first + count - 1 of a program on a stock in order.
  *  A move whose tool is not in `tools` or has no flutes cuts nothing and gives a finding of class error (one per
- *  tool and operation). SWARF_ERROR_CANCELLED leaves the moves played so far cut. */
+ *  tool and operation); when the whole program is played, an operation with moves and a tool that removes nothing
+ *  gives a note. SWARF_ERROR_CANCELLED leaves the moves played so far cut. */
 SWARF_API swarf_status swarf_stock_simulate(swarf_stock *stock, const swarf_program *program, size_t first,
                                             size_t count, const swarf_tool *tools, size_t tool_count,
                                             const swarf_simulation_options *options, const swarf_progress *progress,

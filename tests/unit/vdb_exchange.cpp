@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Files between Swarf and plain OpenVDB, both ways: what another program reads of ours, and what we take of its. */
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include <unistd.h>
+
+extern "C" {
+#include "test.h"
+}
+#include "swarf/swarf.h"
+
+namespace {
+
+constexpr double voxel = 0.2;
+std::string folder;
+
+std::string at(const char *name)
+{
+    return folder + "/" + name;
+}
+
+void write(const std::string &path, const openvdb::FloatGrid::Ptr &grid)
+{
+    openvdb::io::File file(path);
+    file.write({grid});
+    file.close();
+}
+
+/* A block of ours as OpenVDB sees it: class, transform, background, and the distance at every active voxel. */
+void check_theirs()
+{
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = voxel;
+    const swarf_box box = {{1, -2, 0.5}, {11, 6, 7.5}};
+    swarf_stock *stock = nullptr;
+    CHECK_OK(swarf_stock_create_box(&box, &options, &stock));
+    CHECK_OK(swarf_stock_write(stock, at("ours.vdb").c_str(), nullptr));
+    swarf_stock_destroy(stock);
+
+    openvdb::io::File file(at("ours.vdb"));
+    file.open();
+    const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("stock"));
+    file.close();
+    if (!CHECK(grid != nullptr)) return;
+    CHECK(grid->getGridClass() == openvdb::GRID_LEVEL_SET);
+    CHECK_NEAR(grid->voxelSize()[0], voxel, 1e-12);
+    CHECK_NEAR(grid->background(), 3 * voxel, 1e-6);
+    double worst = 0;
+    for (auto value = grid->cbeginValueOn(); value; ++value) {
+        const openvdb::Vec3d p = grid->indexToWorld(value.getCoord());
+        double out2 = 0, in = -1e9;
+        for (int k = 0; k < 3; k++) {
+            const double d = std::fabs(p[k] - 0.5 * (box.lo[k] + box.hi[k])) - 0.5 * (box.hi[k] - box.lo[k]);
+            out2 += d > 0 ? d * d : 0;
+            in = std::fmax(in, d);
+        }
+        worst = std::fmax(worst, std::fabs(*value - (in > 0 ? std::sqrt(out2) : in)));
+    }
+    CHECK(grid->activeVoxelCount() > 10000);
+    CHECK(worst < 1e-5);
+    CHECK(grid->tree().getValue(openvdb::Coord::round(grid->worldToIndex(openvdb::Vec3d(6, 2, 4)))) < 0);
+}
+
+/* Spheres of theirs: half widths other than ours, and values kept as halves. */
+void check_ours()
+{
+    const double radius = 5, exact = 4.0 / 3.0 * std::acos(-1.0) * radius * radius * radius;
+    for (const float width : {2.0f, 3.0f, 5.0f})
+        for (const bool half : {false, true}) {
+            const auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
+                static_cast<float>(radius), openvdb::Vec3f(1, 2, 3), static_cast<float>(voxel), width);
+            grid->setSaveFloatAsHalf(half);
+            write(at("sphere.vdb"), grid);
+            swarf_stock *stock = nullptr;
+            double volume = 0;
+            if (!CHECK_OK(swarf_stock_read(at("sphere.vdb").c_str(), nullptr, &stock))) continue;
+            CHECK_OK(swarf_stock_volume(stock, &volume));
+            CHECK_NEAR(volume, exact, (half ? 1e-3 : 2e-4) * exact);
+            swarf_stock_destroy(stock);
+        }
+}
+
+/* What has no surface is refused: solid tiles alone, and a sphere that lost the leaf at one of its poles. */
+void refuse(const char *what, const openvdb::FloatGrid::Ptr &grid)
+{
+    write(at("bare.vdb"), grid);
+    swarf_stock *stock = nullptr;
+    if (!CHECK_FAILS(swarf_stock_read(at("bare.vdb").c_str(), nullptr, &stock), SWARF_ERROR_FORMAT,
+                     "bare.vdb: not a narrow band"))
+        std::printf("    %s\n", what);
+    swarf_stock_destroy(stock);
+}
+
+void check_refusals()
+{
+    const float band = 3 * static_cast<float>(voxel);
+    auto grid = openvdb::createLevelSet<openvdb::FloatGrid>(voxel);
+    grid->tree().addTile(1, openvdb::Coord(0, 0, 0), -band, false);
+    grid->tree().addTile(1, openvdb::Coord(8, 0, 0), -band, false);
+    refuse("tiles alone", grid);
+
+    grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(20, openvdb::Vec3f(0), static_cast<float>(voxel));
+    for (int x = -16; x <= 8; x += 8)
+        for (int y = -16; y <= 8; y += 8)
+            for (int z = 80; z <= 104; z += 8) grid->tree().addTile(1, openvdb::Coord(x, y, z), band, false);
+    refuse("a hole", grid);
+}
+
+} // namespace
+
+int main()
+{
+    char name[] = "/tmp/swarf-exchange-XXXXXX";
+    if (!mkdtemp(name)) return 2;
+    folder = name;
+    openvdb::initialize();
+    check_theirs();
+    check_ours();
+    check_refusals();
+    for (const char *file : {"ours.vdb", "sphere.vdb", "bare.vdb"}) std::remove(at(file).c_str());
+    rmdir(name);
+    return test_end();
+}
