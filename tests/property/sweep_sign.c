@@ -12,7 +12,8 @@
 
 #include "cases.h"
 
-enum { CHUNK = 1000, PRINTED = 3, CROSSINGS = 20 };
+/* CROSSINGS of each chunk at most, MOST_CROSSINGS of a case: the oracle takes milliseconds for each. */
+enum { CHUNK = 1000, PRINTED = 3, CROSSINGS = 20, MOST_CROSSINGS = 120 };
 
 /* No sign may differ farther from the surface than this, in voxels. */
 static const double exact_bound = 1e-4;
@@ -127,7 +128,7 @@ static void run_case(int number, result *r)
             r->wrong++;
             note(r, PRINTED, "wrong sign", (double)value[i], wanted, cutter_name, &path, voxel, point[i]);
         }
-        for (int i = 0; i < CHUNK && r->crossings < CROSSINGS * (long)(chunk + 1); i++)
+        for (int i = 0; i < CHUNK && r->crossings < CROSSINGS * (long)(chunk + 1) && r->crossings < MOST_CROSSINGS; i++)
             check_crossing(cutter, cutter_name, &body, &path, voxel,
                            curved || hollow ? crossing_bound + SWARF_SWEEP_BOUND : crossing_bound, &random, point[i],
                            r);
