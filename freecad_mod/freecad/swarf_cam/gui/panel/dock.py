@@ -148,7 +148,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.colouring.setToolTip(translate("Swarf", "What the colours of the stock show"))
         for name, text in COLOURINGS:
             self.colouring.addItem(translate("Swarf", text), name)
-        self.colouring.activated.connect(lambda *_: self._wish())
+        self.colouring.currentIndexChanged.connect(lambda *_: self._wish())
         if hasattr(self._swarf.Scene, "set_surface"):  # else the scene does not know which move made what
             bar.addWidget(self.colouring)
         spring = QtWidgets.QWidget()
