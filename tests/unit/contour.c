@@ -182,7 +182,7 @@ static void check_cylinder(void)
 static int stop(void *user, double fraction)
 {
     (void)fraction;
-    return ++*(int *)user >= 3;
+    return ++*(int *)user >= 1; /* later calls come by the clock: a fast machine may finish before */
 }
 
 static void check_refusals(void)
