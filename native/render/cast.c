@@ -21,7 +21,7 @@ enum { PACKETS = 32 };
 static void cast_packet(const cast *c, size_t first)
 {
     swarf_rays rays;
-    double length[SWARF_PACKET];
+    double length[SWARF_PACKET] = {0};
     rays.active = 0;
     for (int lane = 0; lane < SWARF_PACKET && first + (size_t)lane < c->count; lane++) {
         const double *o = c->origin + 3 * (first + (size_t)lane), *d = c->direction + 3 * (first + (size_t)lane);

@@ -176,7 +176,7 @@ void swarf_look_through(const swarf_look *look, const double x[SWARF_PACKET], co
 {
     swarf_rays rays;
     double skipped[SWARF_PACKET] = {0};
-    int through[SWARF_PACKET];
+    int through[SWARF_PACKET] = {0};
     unsigned inside = 0, fixed = 0;
     swarf_ray_kernel_current()->aim(&look->source, x, y, &rays);
     rays.active = (1u << count) - 1;
@@ -211,7 +211,7 @@ void swarf_look_through(const swarf_look *look, const double x[SWARF_PACKET], co
 unsigned swarf_look_blocked(const swarf_look *look, swarf_rays *rays)
 {
     double skipped[SWARF_PACKET];
-    int through[SWARF_PACKET];
+    int through[SWARF_PACKET] = {0};
     if (look->section_count) cut(look, rays, skipped, through);
     swarf_scene_trace(look->scene, rays, NULL);
     const swarf_fixtures *fixtures = swarf_scene_fixtures(look->scene);

@@ -262,7 +262,7 @@ swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, co
     SWARF_TRY(check_options(options));
     SWARF_TRY(swarf_scene_enter(scene));
     swarf_look look = {0};
-    swarf_sight sight;
+    swarf_sight sight = {0};
     const double place[2] = {x, y}, xs[SWARF_PACKET] = {x}, ys[SWARF_PACKET] = {y};
     swarf_status status = swarf_look_begin(scene, camera, options, options->height, &look);
     if (status == SWARF_OK) {

@@ -135,7 +135,7 @@ static double top_of(const swarf_body *body)
 void swarf_trace_box(const swarf_trace *trace, swarf_box *out)
 {
     const double R = trace->body->exact_radius;
-    double a[3], b[3], rate[3], sag = 0;
+    double a[3] = {0}, b[3] = {0}, rate[3], sag = 0;
     if (trace->kind == TRACE_ARC) {
         for (int i = 0; i < 2; i++) {
             double *p = i ? b : a;
