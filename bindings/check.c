@@ -84,7 +84,11 @@ static int lists_read(module_state *state, PyObject *fixtures, PyObject *no_plun
     const Py_ssize_t solid_count = PyTuple_Size(out->fixtures), number_count = PyTuple_Size(numbers);
     out->solids = PyMem_Calloc((size_t)solid_count + 1, sizeof *out->solids);
     out->no_plunge = PyMem_Calloc((size_t)number_count + 1, sizeof *out->no_plunge);
-    if (!out->solids || !out->no_plunge) PyErr_NoMemory();
+    if (!out->solids || !out->no_plunge) {
+        Py_DECREF(numbers);
+        PyErr_NoMemory();
+        return -1;
+    }
     for (Py_ssize_t i = 0; i < solid_count && !PyErr_Occurred(); i++) {
         PyObject *fixture = PyTuple_GetItem(out->fixtures, i);
         if (PyObject_TypeCheck(fixture, state->solid))

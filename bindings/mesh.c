@@ -314,7 +314,7 @@ PyObject *compare_volume(PyObject *module, PyObject *args, PyObject *keywords)
     native_call call;
     if (call_begin(&call, progress)) return NULL;
     const swarf_triangles triangles = swarf_mesh_triangles(handle_of(design));
-    swarf_comparison found;
+    swarf_comparison found = {0};
     swarf_solid *solid = NULL;
     swarf_status status = swarf_solid_create(&triangles, NULL, &solid);
     if (!status) status = swarf_compare_volume(((stock_object *)stock)->handle, solid, &call.progress, &found);

@@ -138,8 +138,8 @@ swarf_status swarf_contour_place(contour *work, contour_block *block)
 
 /* Corner of a quadrilateral: the vertex of the cell `back` of the edge's voxel. */
 typedef struct corner {
-    uint32_t number;
     double at[3]; /* in voxels from the edge's voxel */
+    uint32_t number;
     int calm;
 } corner;
 

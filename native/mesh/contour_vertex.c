@@ -122,8 +122,11 @@ static int outside(const double x[3])
 static int meet_inside(const contour_polygon *polygon, const double about[3], double out[3])
 {
     int rank = meet(polygon, about, least_eigenvalue, out);
-    for (double stricter = 5 * least_eigenvalue; rank > 1 && outside(out) && stricter < 1; stricter *= 5)
+    double stricter = 5 * least_eigenvalue;
+    while (rank > 1 && outside(out) && stricter < 1) {
         rank = meet(polygon, about, stricter, out);
+        stricter *= 5;
+    }
     return rank;
 }
 

@@ -35,7 +35,7 @@ swarf_status swarf_halfedges_create(const swarf_triangles *t, uint32_t **opposit
                   t->triangle_count);
     const uint32_t count = (uint32_t)(3 * t->triangle_count);
     size_t *end = calloc(t->vertex_count + 1, sizeof *end);
-    uint32_t *sorted = malloc(((size_t)count + 1) * sizeof *sorted), *out = malloc(((size_t)count + 1) * sizeof *out);
+    uint32_t *sorted = calloc((size_t)count + 1, sizeof *sorted), *out = malloc(((size_t)count + 1) * sizeof *out);
     if (!end || !sorted || !out) {
         free(end);
         free(sorted);

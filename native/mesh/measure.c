@@ -100,7 +100,7 @@ static void begin_shell(swarf_shell *shell)
 static swarf_status count_parts(const swarf_triangles *t, const uint32_t *opposite, swarf_measures *m)
 {
     size_t *begin = calloc(m->shell_count + 2, sizeof *begin);
-    uint32_t *order = malloc((t->triangle_count + 1) * sizeof *order),
+    uint32_t *order = calloc(t->triangle_count + 1, sizeof *order),
              *seen = malloc((t->vertex_count + 1) * sizeof *seen);
     if (!begin || !order || !seen) {
         free(begin);
@@ -183,7 +183,7 @@ static swarf_status measure(const swarf_triangles *t, swarf_measures *m)
     SWARF_TRY(swarf_halfedges_create(t, &opposite));
     swarf_status status = swarf_halfedges_pieces(opposite, t->triangle_count, m->shell_of, &m->shell_count);
     if (status == SWARF_OK) {
-        m->shells = malloc((m->shell_count + 1) * sizeof *m->shells);
+        m->shells = calloc((m->shell_count + 1), sizeof *m->shells);
         if (!m->shells) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for measuring");
     }
     if (status == SWARF_OK) {

@@ -187,13 +187,14 @@ static void lay_out(job *j, const struct pass *pass, double voxel)
             hi[k] = fmax(hi[k], (double)j->facets->xyz[3 * i + (size_t)k]);
         }
     j->edge = pass->edge * voxel;
-    for (double cubes = INFINITY; cubes > most_cubes; j->edge *= 1.5) {
-        cubes = 1;
+    for (;;) {
+        double cubes = 1;
         for (int k = 0; k < 3; k++) {
             j->count[k] = (size_t)fmin((hi[k] - j->lo[k]) / j->edge + pass->shift + 1, 1e6);
             cubes *= (double)j->count[k];
         }
         if (cubes <= most_cubes) break;
+        j->edge *= 1.5;
     }
     for (int k = 0; k < 3; k++) j->lo[k] -= pass->shift * j->edge;
 }
@@ -249,12 +250,13 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
     const double part = (to - from) / (steps * PASSES);
     for (int step = 0; step < steps && status == SWARF_OK; step++) {
         j.limit = error_mm * pow(error_step, step - (steps - 1));
-        for (int pass = 0; pass < PASSES && status == SWARF_OK; pass++, at += part) {
+        for (int pass = 0; pass < PASSES && status == SWARF_OK; pass++) {
             size_t gone = 0;
             j.first = pass == 0;
             if (j.first) memset(j.settled, 0, facets->vertex_count);
             status = run_pass(&j, &passes[pass], voxel, progress, at, at + part, &gone);
             free_pass(&j);
+            at += part;
             if (budget && facets->facet_count <= budget) break;
         }
         if (budget && facets->facet_count <= budget) break;

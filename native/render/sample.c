@@ -174,7 +174,8 @@ static swarf_status sample_some(void *context, size_t index)
         double place[2][SWARF_PACKET] = {{0}};
         for (int32_t sub = 0; sub < n * n; sub++) {
             place[0][sub] = swarf_canvas_x(c, x, (sub % n + 0.5) / n);
-            place[1][sub] = swarf_canvas_y(c, y, (sub / n + 0.5) / n);
+            const int32_t row = sub / n;
+            place[1][sub] = swarf_canvas_y(c, y, (row + 0.5) / n);
         }
         swarf_look_through(&c->look, place[0], place[1], (unsigned)(n * n), s->sample + number * (size_t)(n * n));
     }
@@ -189,7 +190,8 @@ static void place_of_sample(const void *context, size_t index, double place[2])
     const int32_t n = c->options->samples, sub = (int32_t)(index % (size_t)(n * n));
     const size_t square = s->rough[index / (size_t)(n * n)];
     place[0] = swarf_canvas_x(c, (int32_t)(square % (size_t)c->width), (sub % n + 0.5) / n);
-    place[1] = swarf_canvas_y(c, (int32_t)(square / (size_t)c->width), (sub / n + 0.5) / n);
+    const int32_t row = sub / n;
+    place[1] = swarf_canvas_y(c, (int32_t)(square / (size_t)c->width), (row + 0.5) / n);
 }
 
 /** The sight of sample (i, j), counted over the whole strip; NULL beyond it. */
@@ -229,8 +231,9 @@ static swarf_status resolve_some(void *context, size_t index)
         for (int32_t sub = 0; sub < n * n; sub++) {
             const swarf_sight *own = &s->sample[number * (size_t)(n * n) + (size_t)sub];
             float one[4];
-            shade_sight(c, x, y, (sub / n + 0.5) / n, own, one);
-            const int32_t i = n * x + sub % n, j = n * (y - s->top) + sub / n;
+            const int32_t row = sub / n;
+            shade_sight(c, x, y, (row + 0.5) / n, own, one);
+            const int32_t i = n * x + sub % n, j = n * (y - s->top) + row;
             const float edge = c->options->edges ? edge_at(s, own, i, j) : 0;
             if (edge > 0) draw_edge(one, edge);
             for (int channel = 0; channel < 4; channel++) sum[channel] += one[channel] / (float)(n * n);
@@ -241,7 +244,7 @@ static swarf_status resolve_some(void *context, size_t index)
 
 static swarf_status shade_strip(strip *s)
 {
-    const size_t rows = (size_t)s->rows, samples = (size_t)(s->canvas->options->samples * s->canvas->options->samples);
+    const size_t rows = (size_t)s->rows, side = (size_t)s->canvas->options->samples, samples = side * side;
     s->count[0] = 0;
     SWARF_TRY(swarf_parallel_for(rows, shade_row, s, NULL, 0, 1));
     for (size_t row = 0; row < rows; row++) s->count[row + 1] += s->count[row];

@@ -138,7 +138,7 @@ static face_key key_of(const swarf_shells *s, size_t triangle)
 /* Faces by their vertices, so that those on the same three are neighbours. */
 static face_key *sorted_faces(const swarf_shells *s, size_t *starts)
 {
-    face_key *keys = malloc((s->triangle_count + 1) * sizeof *keys);
+    face_key *keys = calloc(s->triangle_count + 1, sizeof *keys);
     if (!keys) return NULL;
     memset(starts, 0, (s->vertex_count + 2) * sizeof *starts);
     for (size_t i = 0; i < s->triangle_count; i++) starts[(size_t)key_of(s, i).v[0] + 2]++;
@@ -395,10 +395,10 @@ static swarf_status gather_shells(const swarf_shells *s, uint32_t *parent, shell
 /* Put the triangles in the order of their shells and join neighbours of one kind. */
 static swarf_status make_runs(swarf_shells *s, const uint32_t *shell_of, shell *shells, size_t count)
 {
-    uint32_t *index = malloc(3 * s->triangle_count * sizeof *index);
-    uint32_t *source = malloc(s->triangle_count * sizeof *source);
-    uint32_t *across = malloc(3 * s->triangle_count * sizeof *across);
-    uint32_t *places = malloc(s->triangle_count * sizeof *places);
+    uint32_t *index = malloc((3 * s->triangle_count + 1) * sizeof *index);
+    uint32_t *source = malloc((s->triangle_count + 1) * sizeof *source);
+    uint32_t *across = malloc((3 * s->triangle_count + 1) * sizeof *across);
+    uint32_t *places = malloc((s->triangle_count + 1) * sizeof *places);
     s->runs = malloc(count * sizeof *s->runs);
     if (!index || !source || !across || !places || !s->runs) {
         free(index);

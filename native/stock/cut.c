@@ -101,6 +101,7 @@ static void touch_leaf(const struct cut_work *work, struct touch *touch, const f
                        const int32_t corner[3])
 {
     for (int i = 0; i < SWARF_LEAF_SIZE; i++) {
+        /* the kernel wrote all of it: NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign) */
         const float own = before ? before[i] : -work->layout->background, depth = after[i] - own;
         const float voxel = (float)work->layout->voxel;
         if (fabsf(own) > touch_near * voxel && depth < touch_deep * voxel) continue;
