@@ -81,8 +81,9 @@ def verify(
     ``tolerance`` in mm is for both sides; ``excess`` (material left) and ``gouge`` (material missing) set one of them.
     ``allowance`` is material that is meant to be left. Material left where no move went is a warning, with
     ``complete`` an error. Rapids through material, shanks and holders that touch it, and all else that Stock.check()
-    looks for are findings too; ``fixtures`` and ``clearance`` are handed to it. ValueError without a design; GeometryError where it encloses nothing; whatever simulate()
-    raises.
+    looks for are findings too, as are moves that cannot be simulated (turned axes) and
+    operations that remove nothing; ``fixtures`` and ``clearance`` are
+    handed to it. ValueError without a design; GeometryError where it encloses nothing; whatever simulate() raises.
     """
     mesh = job.design if design is None else design
     if mesh is None:
@@ -108,7 +109,7 @@ def verify(
     result.seconds["total"] += result.seconds["check"] + result.seconds["compare"]
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, limits, allowance, complete=complete)
-    made.findings = _check_findings(job, checked) + _design_findings(solid, first, mesh) + [
+    made.findings = _check_findings(job, checked) + _uncut_findings(job, result, checked) + _design_findings(solid, first, mesh) + [
         _cluster_finding(job, cluster, complete) for cluster in deviation.clusters]
     return made
 
@@ -129,6 +130,13 @@ def _check_findings(job: Job, checked: Sequence[CheckFinding]) -> list[Verdict]:
     names = job.program.operations
     return [Verdict(found.severity, found.text, names[found.operation] if 0 <= found.operation < len(names) else None,
                     found.line, found.move, found.tip) for found in checked]
+
+
+def _uncut_findings(job: Job, result: Result, checked: Sequence[CheckFinding]) -> list[Verdict]:
+    """What the simulation says of moves that cut nothing, less what the checks tell as well (missing tools)."""
+    told = {found.operation for found in checked if found.kind == "tool"}
+    return [Verdict(found.severity, found.text, *operation_of(job, found.move), found.move)
+            for found in result.simulation.findings if found.operation not in told]
 
 
 def _design_findings(solid: Solid, first: Stock, mesh: Mesh) -> list[Verdict]:

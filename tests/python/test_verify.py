@@ -156,3 +156,37 @@ def test_command(tmp_path):
     assert done.returncode == 1 and "gouge" in done.stderr
     done = subprocess.run([*words, "--report", str(tmp_path / "r.pdf")], capture_output=True, text=True, timeout=120)
     assert done.returncode == 2 and "r.pdf" in done.stderr
+
+
+def test_moves_that_cannot_be_simulated_fail(tmp_path):
+    path = tmp_path / "turned.nc"
+    path.write_text("G21 G90 G94\nT1 M6\nS8000 M3\nG0 X-5 Y15 Z5\nG0 A90\nG1 Z-1 F200\nG1 X45 F400\nG0 Z5\nM2\n")
+    job = faced(1.0)
+    job.program = swarf.Program.read_gcode(path)
+    done = swarf.verify(job, box(LO, HI), voxel=0.5)
+    assert not done.passed
+    assert [found.line for found in done.findings if "turned and shifted poses" in found.text] == [6]
+
+
+def command(tmp_path, text, *words):
+    program, design = tmp_path / "part.nc", tmp_path / "design.stl"
+    program.write_text(text)
+    DESIGN.write(str(design))
+    return subprocess.run(
+        [sys.executable, "-P", "-m", "swarf", "verify", str(program), "--design", str(design), "--voxel", "0.5",
+         "--stock", "box:0,0,-10,40,30,0", "--tool", "1=flat:d=6,l=20", *words],
+        capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_an_empty_program_is_no_pass(tmp_path):
+    done = command(tmp_path, "G21\nM2\n")
+    assert done.returncode == 2 and "has no moves" in done.stderr
+
+
+def test_verify_reads_gcode_as_it_is_told(tmp_path):
+    lines = "G21 G90 G94\nT1 M6\nS8000 M3\nG0 X-5 Y15 Z5\n/ G38.9 X1\nG1 Z1 F200\nG0 Z5\nM2\n"
+    assert command(tmp_path, lines).returncode == 2
+    done = command(tmp_path, lines, "--block-delete")
+    assert done.returncode == 0 and "passed" in done.stdout  # no move came near: see --complete
+    assert "removes nothing" in done.stderr and "not reached" in done.stderr
+    assert command(tmp_path, lines, "--block-delete", "--complete").returncode == 1

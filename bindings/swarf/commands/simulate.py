@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import time
-from typing import Any, Sequence
+from typing import Any
 
-from .. import _native, gcode, readers, report, specs, timing
+from .. import inputs, report, timing
 from ..console import DONE, FINDINGS, check_outputs, check_suffix, one_line
-from ..job import Job
 from ..progress import Bar
-from ..simulate import DEFAULT_RESOLUTION, output_suffix, simulate
-
-#: More findings than this are left to the report.
-FINDINGS_SHOWN = 20
+from ..simulate import output_suffix, simulate
 
 
 def add(subparsers: Any) -> None:
@@ -26,81 +21,26 @@ def add(subparsers: Any) -> None:
         description="Cut a stock with the program in INPUT. Exit status: 0 done, 1 findings of class error, 2 could "
         "not run. Lengths in mm.",
     )
-    command.add_argument("input", metavar="INPUT", help="a G-code file, or a .FCStd file where the add-on is installed")
-    command.add_argument("--job", metavar="NAME", help="the job in a .FCStd file, if it has several")
-    command.add_argument("--stock", metavar="SPEC", help=specs.STOCK_HELP)
-    command.add_argument("--tool", metavar="N=SPEC", action="append", default=[],
-                         help="tool number N, e.g. 1=flat:d=3,l=18 (repeatable)")
-    size = command.add_mutually_exclusive_group()
-    size.add_argument("--voxel", metavar="MM", type=float, help="edge of a voxel")
-    size.add_argument("--resolution", metavar="N", type=float,
-                      help=f"voxels along the stock's longest edge (default {DEFAULT_RESOLUTION})")
-    command.add_argument("--threads", metavar="T", type=int, default=0, help="threads to use (default: all cores)")
+    inputs.add_arguments(command)
     command.add_argument("--output", metavar="FILE", action="append", default=[],
                          help="write the result: .stl .ply .obj .3mf .glb .vdb (repeatable)")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
     command.add_argument("--report", metavar="FILE.json", help="write a report")
     command.add_argument("--machine", metavar="FILE.json", help="speeds and accelerations of the machine, for its time")
-    gcode.add_arguments(command)
-
-
-def add_tools(job: Job, words: Sequence[str]) -> None:
-    """Put ``--tool`` into the job, over what it has; ValueError where a number is given twice."""
-    given = set()
-    for word in words:
-        number, cutter, text = specs.tool(word)
-        if number in given:
-            raise ValueError(f"tool {number}: given twice")
-        given.add(number)
-        job.tools[number] = cutter
-        job.tool_names[number] = text
-
-
-def check_gcode_job(job: Job, path: str) -> None:
-    """G-code tells neither tools nor stock: ValueError says which are missing and how to give them."""
-    used = job.program.tools
-    if -1 in used and len(job.tools) == 1 and used == (-1,):
-        # The program never names a tool: the only one there is must be meant.
-        number, cutter = next(iter(job.tools.items()))
-        job.tools[-1] = cutter
-        job.tool_names[-1] = job.tool_names[number]
-        job.notes.append(f"the program names no tool: tool {number} is used")
-    missing = [number for number in used if number not in job.tools]
-    if -1 in missing:
-        raise ValueError(f"{path}: moves before the first T and M6 have no tool; "
-                         "begin the program with a tool change, e.g. T1 M6")
-    if missing:
-        names = ", ".join(f"T{number}" for number in missing)
-        options = " ".join(f"--tool {number}=flat:d=6,l=20" for number in missing)
-        raise ValueError(f"{path}: the program uses {names}, which G-code does not describe; give e.g. {options}")
-    if job.stock is None:
-        raise ValueError(f"{path}: G-code does not tell the stock; give e.g. --stock box:0,0,-10,100,60,0")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Cut, write what is asked for, say what was found."""
-    if abs(arguments.threads) >= 1 << 31:  # no int of C's: the library could not say so
-        raise ValueError(f"threads: {arguments.threads} is not in 0 .. 1024 (0: one per core)")
-    _native.set_threads(arguments.threads)
+    inputs.set_threads(arguments)
     for path in arguments.output:
         output_suffix(path)
     check_suffix(arguments.picture, "picture", ".png")
     check_suffix(arguments.report, "report", ".json")
     check_outputs((*arguments.output, arguments.picture, arguments.report), arguments.input)
-    stock = None if arguments.stock is None else specs.stock(arguments.stock)
-
-    options = gcode.options(arguments)
     machine = None if arguments.machine is None else timing.read_machine(arguments.machine)
     with Bar() as bar:
         started = time.perf_counter()
-        job = readers.read(arguments.input, arguments.job, lambda fraction: bar("read", fraction), options)
-        if stock is not None:
-            job.stock = stock
-        add_tools(job, arguments.tool)
-        if len(job.program) == 0:
-            raise ValueError(f"{arguments.input}: the program has no moves: there is nothing to simulate")
-        if os.path.splitext(arguments.input)[1].lower() in readers.GCODE_SUFFIXES:
-            check_gcode_job(job, arguments.input)
+        job = inputs.read_job(arguments, bar)
         seconds_read = time.perf_counter() - started
 
         result = simulate(
@@ -115,15 +55,9 @@ def run(arguments: argparse.Namespace) -> int:
     made = report.make(result, arguments.input, seconds_read, machine)
     if arguments.report is not None:
         report.write(made, arguments.report)
-    for note in job.program.notes:
-        print(f"swarf: {note[0]}: {gcode.note_text(note)}", file=sys.stderr)
-    for note in job.notes:
-        print(f"swarf: note: {one_line(note)}", file=sys.stderr)
-    for finding in result.simulation.findings[:FINDINGS_SHOWN]:
-        print(f"swarf: {finding.severity}: line {finding.line}: {one_line(finding.text)}", file=sys.stderr)
-    hidden = len(result.simulation.findings) - FINDINGS_SHOWN
-    if hidden > 0:
-        print(f"swarf: note: {hidden} more findings are in the report", file=sys.stderr)
+    inputs.print_notes(job)
+    inputs.print_findings([f"{finding.severity}: line {finding.line}: {one_line(finding.text)}"
+                           for finding in result.simulation.findings])
     if sys.stdout.isatty():
         print(report.summary(made))
     return FINDINGS if result.failed else DONE

@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 import time
 from typing import Any
 
-from .. import _native, document, readers, report, specs
+from .. import document, inputs, report
 from ..console import DONE, FINDINGS, check_outputs, one_line
 from ..progress import Bar
-from ..simulate import DEFAULT_RESOLUTION
-from ..verify import DESIGN_SUFFIXES, read_design, verify
-from .simulate import add_tools, check_gcode_job
-
-#: More findings than this are left to the report.
-FINDINGS_SHOWN = 20
+from ..verify import DESIGN_SUFFIXES, Verdict, read_design, verify
 
 REPORT_SUFFIXES = (".html", ".json")
 
@@ -29,7 +23,7 @@ def add(subparsers: Any) -> None:
         description="Simulate the program in INPUT and hold what is left of the stock against the design. Exit status: "
         "0 passed, 1 failed, 2 could not run. Lengths in mm.",
     )
-    command.add_argument("input", metavar="INPUT", help="a G-code file, or a .FCStd file where the add-on is installed")
+    inputs.add_arguments(command)
     command.add_argument("--design", metavar="FILE",
                          help=f"{' '.join(DESIGN_SUFFIXES)}; default: the model of the job in a .FCStd file")
     command.add_argument("--tolerance", metavar="MM", type=float, default=0.05, help="both ways (default 0.05)")
@@ -42,24 +36,20 @@ def add(subparsers: Any) -> None:
                          help="a mesh that nothing may touch: clamps, the vice (repeatable)")
     command.add_argument("--clearance", metavar="MM", type=float, default=0.0,
                          help="warn where the holder comes nearer to the stock")
-    command.add_argument("--job", metavar="NAME", help="the job in a .FCStd file, if it has several")
-    command.add_argument("--stock", metavar="SPEC", help=specs.STOCK_HELP)
-    command.add_argument("--tool", metavar="N=SPEC", action="append", default=[],
-                         help="tool number N, e.g. 1=flat:d=3,l=18 (repeatable)")
-    size = command.add_mutually_exclusive_group()
-    size.add_argument("--voxel", metavar="MM", type=float, help="edge of a voxel")
-    size.add_argument("--resolution", metavar="N", type=float,
-                      help=f"voxels along the stock's longest edge (default {DEFAULT_RESOLUTION})")
-    command.add_argument("--threads", metavar="T", type=int, default=0, help="threads to use (default: all cores)")
     command.add_argument("--report", metavar="FILE", action="append", default=[],
                          help="write a report: .html .json (repeatable)")
 
 
+def finding_line(finding: Verdict) -> str:
+    """A finding as one line: severity, line of the program, text, place."""
+    where = f" line {finding.line}:" if finding.line else ""
+    place = "" if finding.place is None else " at ({:.2f}, {:.2f}, {:.2f})".format(*finding.place)
+    return f"{finding.severity}:{where} {one_line(finding.text)}{place}"
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Simulate, compare, write the reports, say what was found."""
-    if abs(arguments.threads) >= 1 << 31:  # no int of C's: the library could not say so
-        raise ValueError(f"threads: {arguments.threads} is not in 0 .. 1024 (0: one per core)")
-    _native.set_threads(arguments.threads)
+    inputs.set_threads(arguments)
     for path in arguments.report:
         if os.path.splitext(path)[1].lower() not in REPORT_SUFFIXES:
             raise ValueError(f"{path}: unknown suffix; a report is {' or '.join(REPORT_SUFFIXES)}")
@@ -69,12 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     with Bar() as bar:
         started = time.perf_counter()
-        job = readers.read(arguments.input, arguments.job, lambda fraction: bar("read", fraction))
-        if arguments.stock is not None:
-            job.stock = specs.stock(arguments.stock)
-        add_tools(job, arguments.tool)
-        if os.path.splitext(arguments.input)[1].lower() in readers.GCODE_SUFFIXES:
-            check_gcode_job(job, arguments.input)
+        job = inputs.read_job(arguments, bar)
         if design is None and job.design is None:
             raise ValueError(f"{arguments.input}: it has no design to verify against; give --design FILE")
         seconds_read = time.perf_counter() - started
@@ -88,14 +73,8 @@ def run(arguments: argparse.Namespace) -> int:
                 report.write_text(document.make(done, made, lambda fraction: bar("pictures", fraction)), path)
             else:
                 report.write(made, path)
-    for note in job.notes:
-        print(f"swarf: note: {one_line(note)}", file=sys.stderr)
-    for finding in done.findings[:FINDINGS_SHOWN]:
-        where = f" line {finding.line}:" if finding.line else ""
-        place = "" if finding.place is None else " at ({:.2f}, {:.2f}, {:.2f})".format(*finding.place)
-        print(f"swarf: {finding.severity}:{where} {one_line(finding.text)}{place}", file=sys.stderr)
-    if len(done.findings) > FINDINGS_SHOWN:
-        print(f"swarf: note: {len(done.findings) - FINDINGS_SHOWN} more findings are in the report", file=sys.stderr)
+    inputs.print_notes(job)
+    inputs.print_findings([finding_line(finding) for finding in done.findings])
     print(f"{arguments.input}: {'passed' if done.passed else 'FAILED'}, tolerance +{done.tolerance[0]:g} "
           f"-{done.tolerance[1]:g} mm, voxel {done.result.stock.voxel:g} mm")
     return DONE if done.passed else FINDINGS
