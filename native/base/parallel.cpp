@@ -53,7 +53,7 @@ tbb::global_control *pool_size = nullptr;
 
 using clock_type = std::chrono::steady_clock;
 /* Often enough for a smooth bar, rare enough that a Python callback costs nothing. */
-constexpr auto report_interval = std::chrono::milliseconds(25);
+std::atomic<int> report_interval_ms{25};
 
 struct run {
     swarf_work_fn work;
@@ -80,7 +80,7 @@ struct run {
         const size_t finished = done.fetch_add(1, std::memory_order_relaxed) + 1;
         if (!progress || std::this_thread::get_id() != caller) return;
         const auto now = clock_type::now();
-        if (now - reported < report_interval) return;
+        if (now - reported < std::chrono::milliseconds(report_interval_ms.load(std::memory_order_relaxed))) return;
         reported = now;
         const swarf_status answer = swarf_progress_report(progress, from + (to - from) * static_cast<double>(finished) /
                                                                                static_cast<double>(count));
@@ -149,6 +149,13 @@ extern "C" int swarf_threads(void)
 extern "C" int swarf_parallel_slot(void)
 {
     return current_slot;
+}
+
+extern "C" swarf_status swarf_progress_interval_set(int milliseconds)
+{
+    SWARF_REQUIRE(milliseconds >= 0, "interval of progress: %d ms is negative", milliseconds);
+    report_interval_ms.store(milliseconds);
+    return SWARF_OK;
 }
 
 extern "C" swarf_status swarf_progress_report(const swarf_progress *progress, double fraction)

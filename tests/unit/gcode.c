@@ -7,7 +7,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -623,7 +622,7 @@ static int rising(void *user, double fraction)
     return 0;
 }
 
-/* A million lines: at most a second and 200 MB, with room for slow machines in the time. */
+/* A million lines, and cancelled at the first report. (Time and memory: gcode_bench.) */
 static void test_large(void)
 {
     enum { LINES = 1000000 };
@@ -636,11 +635,7 @@ static void test_large(void)
     swarf_program *program = NULL;
     double last = -1;
     const swarf_progress progress = {rising, &last};
-    const clock_t from = clock();
     CHECK_OK(swarf_gcode_read(text, used, "large.nc", NULL, &progress, &program));
-    const double seconds = (double)(clock() - from) / CLOCKS_PER_SEC;
-    printf("%d lines in %.3f s, %.1f MB peak\n", LINES, seconds, (double)swarf_memory_peak() / 1e6);
-    CHECK(seconds < 10.0);
     CHECK(last == 1.0);
     CHECK(swarf_program_move_count(program) == LINES);
     swarf_program_release(program);

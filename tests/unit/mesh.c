@@ -265,6 +265,7 @@ static void check_from_stock(void)
     CHECK_FAILS(swarf_mesh_create_stock(NULL, 0, NULL, &mesh), SWARF_ERROR_ARGUMENT, NULL);
     int calls = 0;
     const swarf_progress progress = {stop, &calls};
+    CHECK_OK(swarf_progress_interval_set(0));
     CHECK_FAILS(swarf_mesh_create_stock(stock, 0, &progress, &mesh), SWARF_ERROR_CANCELLED, NULL);
     if (CHECK_OK(swarf_stock_boolean(stock, stock, SWARF_DIFFERENCE)) &&
         CHECK_OK(swarf_mesh_create_stock(stock, 0, NULL, &mesh))) {

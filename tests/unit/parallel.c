@@ -105,6 +105,16 @@ static void check_progress(int threads)
     CHECK_FAILS(swarf_parallel_for(2000, dawdle, &done, &progress, 0, 1), SWARF_ERROR_CANCELLED, "cancelled");
     CHECK(w.calls == 1);
     CHECK(atomic_load(&done) < 2000);
+
+    /* without an interval each piece is reported, so that one thread stops at the same piece on any machine */
+    CHECK_FAILS(swarf_progress_interval_set(-1), SWARF_ERROR_ARGUMENT, "-1 ms");
+    CHECK_OK(swarf_progress_interval_set(0));
+    CHECK_OK(swarf_threads_set(1));
+    atomic_store(&done, 0);
+    w = (watch){.caller = pthread_self(), .lowest = 2, .highest = -1, .stop_at = 0.5};
+    CHECK_FAILS(swarf_parallel_for(2000, dawdle, &done, &progress, 0, 1), SWARF_ERROR_CANCELLED, "cancelled");
+    CHECK(w.calls == 1000 && atomic_load(&done) == 1000);
+    CHECK_OK(swarf_progress_interval_set(25));
 }
 
 /* A loop inside a loop, and two threads that loop at the same time, share the pool. */

@@ -235,7 +235,10 @@ static void check_refusals(void)
     triangles = shape_view(&s);
     double last = 0;
     const swarf_progress progress = {stop, &last};
+    CHECK_OK(swarf_progress_interval_set(0));
+    CHECK_OK(swarf_threads_set(1));
     CHECK_FAILS(swarf_stock_create_mesh(&triangles, &options, &progress, &stock), SWARF_ERROR_CANCELLED, NULL);
+    CHECK_OK(swarf_threads_set(0));
     s.xyz[5] = NAN;
     CHECK_FAILS(swarf_stock_create_mesh(&triangles, &options, NULL, &stock), SWARF_ERROR_ARGUMENT, "not finite");
     s.xyz[5] = 0;

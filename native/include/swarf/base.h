@@ -59,6 +59,11 @@ typedef struct swarf_progress {
     void *user;
 } swarf_progress;
 
+/** At least so many milliseconds pass between two reports of one loop (25 at first), this process over. With 0 each
+ *  piece of work done by the calling thread is reported, so that with one thread a callback can stop a call at the same
+ *  place on any machine. SWARF_ERROR_ARGUMENT if negative. Any thread. */
+SWARF_API swarf_status swarf_progress_interval_set(int milliseconds);
+
 /** Set how many threads the library may use, this process over; 0 means one per core.
  *  Results never depend on it. SWARF_ERROR_ARGUMENT if negative or above 1024. Any thread. */
 SWARF_API swarf_status swarf_threads_set(int count);
