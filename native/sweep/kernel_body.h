@@ -102,15 +102,33 @@ INLINE void shaft_most(const struct sixteen *t, const swarf_block *b, float reac
     bounds->covers = maximum(lateral, above);
 }
 
-/* Distance from the middle of the block to sixteen tracks of the ball's centre, less the radius. */
-INLINE lanes capsule_distance(const struct sixteen *t, const swarf_block *b, float radius, float centre)
+/* Both bounds for balls: all points within the radius of a strip (see ball_line()), below the top. `reach` to vertical
+ * edges of the block, `corner` to its corners. */
+INLINE void ball_bounds(const swarf_body *body, const struct sixteen *t, const swarf_block *b, float reach,
+                        struct shaft_bounds *bounds)
 {
-    const lanes ez = all(b->z) - t->z - centre;
+    const float corner = sqrtf(reach * reach + b->half_z * b->half_z);
+    const lanes ez = all(b->z) - t->z - body->core_lo;
+    const lanes on = clamped(t->line_s, t->s0, t->s1), beyond = t->line_s - on;
+    const lanes beside = pick(t->is_arc, t->arc * t->arc, beyond * beyond + t->w * t->w);
     const lanes q = clamped(t->x * t->dx + t->y * t->dy + ez * t->dz, t->t0, t->t1);
     const lanes fx = t->x - q * t->dx, fy = t->y - q * t->dy, fz = ez - q * t->dz;
-    const lanes line = root(fx * fx + fy * fy + fz * fz);
-    const lanes arc = root(t->arc * t->arc + ez * ez);
-    return pick(t->is_arc, arc, line) - radius;
+    const lanes under = pick(t->is_arc, beside + ez * ez, fx * fx + fy * fy + fz * fz);
+    const lanes strip = root(pick(less(t->m * on, ez), beside, under)) - body->radius;
+    const lanes lateral = root(beside) - body->radius;
+    const lanes top = t->z + body->z_hi + t->rise;
+    const lanes above = (b->z - b->half_z) - (t->m * t->s1 + top);
+    const lanes over =
+        (all(b->z) - (t->m * (t->line_s + body->radius) + top)) * t->im - (t->m * t->im * reach + t->im * b->half_z);
+    bounds->least = maximum(maximum(strip - corner, lateral - reach), maximum(above, over));
+    /* wholly above the centre's line only the place in the plane counts */
+    const lanes below = t->m * clamped(t->line_s + reach, t->s0, t->s1) - (ez - b->half_z);
+    const lanes near = pick(less(below, all(0)), lateral + reach, strip + corner);
+    lanes close = (b->z + b->half_z) - (t->m * clamped(t->line_s - reach, t->s0, t->s1) + top);
+    close = pick(less(close, all(0)), close * t->im, close);
+    bounds->most = maximum(minimum(near, strip + corner), close);
+    bounds->floor_least = all(0);
+    bounds->floor_most = bounds->covers = all(far_away);
 }
 
 INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, int ball)
@@ -175,16 +193,13 @@ INLINE int cull_sixteen(const swarf_body *body, const swarf_column *c, const int
                         float *floor)
 {
     const float reach = b->half * 1.41421357f; /* from the middle of the block to its vertical edges */
-    const int ball = body->kind == SWARF_BODY_BALL;
     struct shaft_bounds bounds;
     face_block(c, at, b, t);
-    shaft_least(t, b, reach, body->radius, ball ? body->core_lo : body->z_lo, body->z_hi, &bounds);
-    shaft_most(t, b, reach, body->core_radius, body->core_lo, body->core_hi, &bounds);
-    if (ball) {
-        const float corner = sqrtf(reach * reach + b->half_z * b->half_z);
-        const lanes capsule = capsule_distance(t, b, body->radius, body->core_lo);
-        bounds.least = minimum(bounds.least, capsule - corner);
-        bounds.most = minimum(bounds.most, capsule + corner);
+    if (body->kind == SWARF_BODY_BALL) {
+        ball_bounds(body, t, b, reach, &bounds);
+    } else {
+        shaft_least(t, b, reach, body->radius, body->z_lo, body->z_hi, &bounds);
+        shaft_most(t, b, reach, body->core_radius, body->core_lo, body->core_hi, &bounds);
     }
     if (bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
     unsigned keep = bits(less(bounds.least, all(SWARF_HALF_WIDTH))) & valid;
@@ -444,14 +459,19 @@ static __attribute__((noinline)) void general_tilted(const swarf_body *body, con
  * used elsewhere is off there by h^2 / 4 (distance to the seam), so near the seam the conic itself stands for it:
  *     (height^2 / m^2 - (R^2 - w^2)) / (R + |w|)
  * which is the side's own distance R - |w| up to the disc, and right to second order next to the seam. */
-enum { SEAM = 3 };
+enum { SEAM = 3, STEEP = 6 };
 
 struct slant {
     lanes square, linear, rest;
 };
 
-INLINE struct slant slant_at(lanes aside, lanes chord, lanes scale, float m, float radius)
+/* Of a line of slope m; `seam`: it turns into the side without an edge. */
+INLINE struct slant slant_between(lanes w, float m, float radius, int seam)
 {
+    const lanes chord2 = maximum(all(0), all(radius * radius) - w * w), chord = root(chord2);
+    const lanes scale = chord / root(chord2 + m * m * radius * radius);
+    if (!seam) return (struct slant){all(0), scale, scale * chord * m};
+    const lanes aside = maximum(w, all(0) - w);
     const mask near = less(all(radius - SEAM), aside);
     const lanes conic = all(1) / ((minimum(aside, all(radius)) + radius) * (m * m));
     return (struct slant){pick(near, conic, all(0)), pick(near, all(0), scale),
@@ -465,29 +485,21 @@ INLINE lanes slant_value(const struct slant *slant, lanes height)
 }
 
 static __attribute__((noinline)) void cylinder_seam(float m, float radius, lanes s, lanes w, lanes side, float bottom,
-                                                    float length, float low, float high, int seam, lanes best[8])
+                                                    float length, float low, float high, lanes best[8])
 {
-    const lanes aside = maximum(w, all(0) - w);
-    const lanes chord2 = maximum(all(0), all(radius * radius) - w * w), chord = root(chord2);
-    const lanes scale = chord / root(chord2 + m * m * radius * radius);
-    const struct slant top = slant_at(aside, chord, scale, m, radius);
-    const struct slant beyond = seam ? slant_at(aside, chord, all(1), m, radius) : top;
+    const struct slant slant = slant_between(w, m, radius, 1);
     const lanes at = s * m + bottom;
     for (int z = 0; z < 8; z++) {
-        lanes under = slant_value(&top, at - (float)z);
-        if (seam) under = maximum(under, slant_value(&beyond, at - (float)z));
-        const lanes below = maximum(all(low - (float)z), under);
-        const lanes above = maximum(all((float)z - high), slant_value(&top, all((float)z - length) - at));
+        const lanes below = maximum(all(low - (float)z), slant_value(&slant, at - (float)z));
+        const lanes above = maximum(all((float)z - high), slant_value(&slant, all((float)z - length) - at));
         best[z] = minimum(best[z], maximum(side, maximum(below, above)));
     }
 }
 
 /* Cylinders on lines. Tilted: side, lowest bottom, and the slanted surface that the trailing edge of the bottom leaves,
- * scaled to unit gradient; likewise at the top. Never switched between, so that the band has no tears. `seam`: the
- * bottom lies inside of something else, which gives the distance beyond it: there it only must not be too near, so that
- * it is not scaled. */
+ * scaled to unit gradient; likewise at the top. Never switched between, so that the band has no tears. */
 INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
-                          int seam, lanes best[8])
+                          lanes best[8])
 {
     float *const *f = c->field;
     const float radius = body->radius, m = f[COLUMN_M][i];
@@ -505,9 +517,8 @@ INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t
         }
         return;
     }
-    /* the seam between slanted surface and side: of a ball always within the surface, of others where it is no edge */
-    if (m * m * radius > (seam ? 1.0f : 6.0f) && bits(less(all((radius - SEAM) * (radius - SEAM)), w2))) {
-        cylinder_seam(m, radius, s, w, side, bottom, length, low, high, seam, best);
+    if (m * m * radius > STEEP && bits(less(all((radius - SEAM) * (radius - SEAM)), w2))) {
+        cylinder_seam(m, radius, s, w, side, bottom, length, low, high, best);
         return;
     }
     const int top_near = low + length - SWARF_HALF_WIDTH < 7; /* of a long cutter it mostly is far above */
@@ -515,9 +526,7 @@ INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t
     const lanes scale = chord / root(chord2 + m * m * radius * radius);
     const lanes under = (s - chord) * m + bottom;
     for (int z = 0; z < 8; z++) {
-        const lanes slanted = under - (float)z;
-        lanes value = maximum(maximum(side, all(low - (float)z)), slanted * scale);
-        if (seam) value = maximum(value, slanted);
+        const lanes value = maximum(maximum(side, all(low - (float)z)), (under - (float)z) * scale);
         if (!top_near)
             best[z] = minimum(best[z], value);
         else {
@@ -527,28 +536,78 @@ INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t
     }
 }
 
-/* Balls on lines: the shaft from the centre up, and the capsule's squared distance, rooted once at the end. */
+/* A ball with its shaft above, up to where the shaft ends, is what lies within the radius of a vertical ray; swept
+ * along a line, what lies within the radius of a strip: the line of the ball's centre and all above it. Its distance is
+ * the exact one on both sides, the seam between the ball's and the shaft's part included. */
+struct strip {
+    lanes beside;      /* squared distance in the plane */
+    lanes line;        /* height from which on that is the distance */
+    lanes along, flat; /* for what is below: the place along the line (less its height's part), squared plan distance */
+    lanes t0, t1;
+    float centre, dz;
+};
+
+INLINE lanes strip_square(const struct strip *strip, float z)
+{
+    const float ez = z - strip->centre;
+    const lanes q = strip->along + ez * strip->dz;
+    const lanes t = clamped(q, strip->t0, strip->t1);
+    return t * (t - (q + q)) + (strip->flat + ez * ez);
+}
+
+/* Where the shaft's top is near: `top` is its height at the line's base, `high` the greatest one. `shaft`: the whole
+ * group is above the strip's line. */
+static __attribute__((noinline)) void ball_top(const struct strip *strip, float radius, float m, lanes s, lanes w,
+                                               float top, float high, int shaft, lanes best[8])
+{
+    const lanes side = root(strip->beside) - radius, at = s * m + top;
+    struct slant slant = {all(0), all(0), all(far_away)}; /* of level and vertical lines there is none */
+    if (m > 0) slant = slant_between(w, m, radius, m * m * radius > STEEP);
+    for (int z = 0; z < 8; z++) {
+        lanes value = maximum(side, maximum(all((float)z - high), slant_value(&slant, all((float)z) - at)));
+        if (!shaft) {
+            const lanes ball = root(maximum(strip_square(strip, (float)z), all(0))) - radius;
+            value = pick(less(strip->line, all((float)z)), value, maximum(value, ball));
+        }
+        best[z] = minimum(best[z], value);
+    }
+}
+
+/* Balls on lines; `squares`: squared distances to the strips, rooted once at the end. */
 INLINE void ball_line(const swarf_body *body, const swarf_column *c, int32_t i, lanes x, lanes y, float z0,
-                      lanes best[8], lanes capsule[8])
+                      lanes best[8], lanes squares[8])
 {
     float *const *f = c->field;
-    const float centre = f[COLUMN_Z][i] + body->core_lo - z0, m = f[COLUMN_M][i];
-    const float lowest = centre + m * f[COLUMN_S0][i], highest = centre + m * f[COLUMN_S1][i] + f[COLUMN_RISE][i];
-    if (highest + SWARF_HALF_WIDTH > 0) {
-        const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
-        const lanes along = ex * f[COLUMN_DX][i] + ey * f[COLUMN_DY][i], flat = ex * ex + ey * ey;
-        const lanes t0 = all(f[COLUMN_T0][i]), t1 = all(f[COLUMN_T1][i]);
-        const float dz = f[COLUMN_DZ][i];
-        for (int z = 0; z < 8; z++) {
-            const float ez = (float)z - centre;
-            const lanes q = along + ez * dz;
-            const lanes t = clamped(q, t0, t1);
-            capsule[z] = minimum(capsule[z], t * (t - (q + q)) + (flat + ez * ez));
-        }
-    }
-    if (lowest - SWARF_HALF_WIDTH < 7) {
-        const swarf_body shaft = {.radius = body->radius, .z_lo = body->core_lo, .z_hi = body->z_hi};
-        cylinder_line(&shaft, c, i, x, y, z0, 1, best);
+    const float centre = f[COLUMN_Z][i] + body->core_lo - z0, length = body->z_hi - body->core_lo;
+    const float m = f[COLUMN_M][i], s0 = f[COLUMN_S0][i], s1 = f[COLUMN_S1][i];
+    const lanes ex = x - f[COLUMN_X][i], ey = y - f[COLUMN_Y][i];
+    const float ux = f[COLUMN_UX][i], uy = f[COLUMN_UY][i];
+    const lanes s = ex * ux + ey * uy, w = ey * ux - ex * uy;
+    const lanes on = clamped(s, all(s0), all(s1)), beyond = s - on;
+    /* the line's heights near the group: its first lane is no farther from the others than its diagonal */
+    const float diagonal = 4.25f;
+    const float before = s[0] - diagonal, after = s[0] + diagonal;
+    const float lowest = centre + m * (before < s0 ? s0 : before > s1 ? s1 : before);
+    const float highest = centre + m * (after < s0 ? s0 : after > s1 ? s1 : after);
+    const struct strip strip = {.beside = beyond * beyond + w * w,
+                                .line = on * m + centre,
+                                .along = ex * f[COLUMN_DX][i] + ey * f[COLUMN_DY][i],
+                                .flat = ex * ex + ey * ey,
+                                .t0 = all(f[COLUMN_T0][i]),
+                                .t1 = all(f[COLUMN_T1][i]),
+                                .centre = centre,
+                                .dz = f[COLUMN_DZ][i]};
+    if (lowest + length - SWARF_HALF_WIDTH < 7) {
+        const float high = centre + length + m * s1 + f[COLUMN_RISE][i];
+        ball_top(&strip, body->radius, m, s, w, centre + length, high, highest < 0, best);
+    } else if (highest < 0) {
+        for (int z = 0; z < 8; z++) squares[z] = minimum(squares[z], strip.beside);
+    } else if (lowest > 7) {
+        for (int z = 0; z < 8; z++) squares[z] = minimum(squares[z], strip_square(&strip, (float)z));
+    } else {
+        for (int z = 0; z < 8; z++)
+            squares[z] = minimum(squares[z],
+                                 pick(less(strip.line, all((float)z)), strip.beside, strip_square(&strip, (float)z)));
     }
 }
 
@@ -558,10 +617,10 @@ INLINE void ball_line(const swarf_body *body, const swarf_column *c, int32_t i, 
 INLINE void distance_group(const swarf_body *body, const swarf_column *c, const int32_t *list, size_t count, lanes x,
                            lanes y, float z0, int voxels, float out[128])
 {
-    lanes best[8], capsule[8];
+    lanes best[8], squares[8];
     for (int z = 0; z < 8; z++) {
         best[z] = all(far_away);
-        capsule[z] = all(far_away);
+        squares[z] = all(far_away);
     }
     const int ball = body->kind == SWARF_BODY_BALL;
     for (size_t k = 0; k < count; k++) {
@@ -573,17 +632,17 @@ INLINE void distance_group(const swarf_body *body, const swarf_column *c, const 
             else
                 general_level(body, c, i, x, y, z0, best);
         } else if (ball) {
-            ball_line(body, c, i, x, y, z0, best, capsule);
+            ball_line(body, c, i, x, y, z0, best, squares);
         } else {
-            cylinder_line(body, c, i, x, y, z0, 0, best);
+            cylinder_line(body, c, i, x, y, z0, best);
         }
     }
     /* where no ball is within the band its root is not worth taking */
     const float reach = body->radius + SWARF_HALF_WIDTH;
     for (int z = 0; z < 8; z++) {
         lanes value = best[z];
-        if (ball && bits(less(capsule[z], all(reach * reach))))
-            value = minimum(value, root(maximum(capsule[z], all(0))) - body->radius);
+        if (ball && bits(less(squares[z], all(reach * reach))))
+            value = minimum(value, root(maximum(squares[z], all(0))) - body->radius);
         store(out + z * LANES, value);
     }
 }
