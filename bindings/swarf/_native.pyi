@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Milling simulation: the face of libswarf. Lengths in mm. Import the package swarf instead."""
 import os
-from typing import Any, Callable, Iterable, Literal, NamedTuple, Optional, Sequence, Union, final
+from typing import Any, Callable, Iterable, Literal, Mapping, NamedTuple, Optional, Sequence, Union, final
 
 from typing_extensions import Buffer
 
@@ -87,17 +87,20 @@ class Program:
         start: Optional[Point] = None,
         dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
         tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
+        diameters: Optional[Mapping[int, float]] = None,
         parameters: Optional[Path] = None,
+        machine_unit: Literal["mm", "inch"] = "mm",
         search: Optional[str] = None,
         block_delete: bool = False,
         line_limit: int = 0,
         progress: Progress = None,
     ) -> Program:
         """Program from a G-code file. ``start`` is where the tool stands first; ``tools`` a LinuxCNC tool table file,
-        or (number, diameter, length) rows in mm; ``parameters`` a LinuxCNC parameter file; ``search`` folders of
-        subroutine files, ':' between them; ``block_delete`` leaves out lines that begin with '/'; ``line_limit``
-        bounds what loops execute (0: 20 million lines). OSError, or FormatError "file:line:column: error: 'word' ...".
-        Any thread."""
+        or (number, diameter, length) rows in mm; ``diameters`` maps numbers of tools to diameters in mm, for cutter
+        compensation where no table tells; ``parameters`` a LinuxCNC parameter file; ``machine_unit`` is what the
+        lengths in the two files are in; ``search`` folders of subroutine files, ':' between them; ``block_delete``
+        leaves out lines that begin with '/'; ``line_limit`` bounds what loops execute (0: 20 million lines). OSError,
+        or FormatError "file:line:column: error: 'word' ...". Any thread."""
     @classmethod
     def parse_gcode(
         cls,
@@ -107,7 +110,9 @@ class Program:
         start: Optional[Point] = None,
         dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
         tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
+        diameters: Optional[Mapping[int, float]] = None,
         parameters: Optional[Path] = None,
+        machine_unit: Literal["mm", "inch"] = "mm",
         search: Optional[str] = None,
         block_delete: bool = False,
         line_limit: int = 0,
@@ -122,7 +127,9 @@ class Program:
         start: Optional[Point] = None,
         dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
         tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
+        diameters: Optional[Mapping[int, float]] = None,
         parameters: Optional[Path] = None,
+        machine_unit: Literal["mm", "inch"] = "mm",
         search: Optional[str] = None,
         block_delete: bool = False,
         line_limit: int = 0,

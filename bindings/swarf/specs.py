@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any
+from typing import Any, Sequence
 
 from ._native import Cutter, Error, Mesh
 from .simulate import MESH_SUFFIXES, STOCK_SUFFIXES
@@ -62,3 +62,14 @@ def tool(spec: str) -> tuple[int, Cutter, str]:
         return int(number), Cutter(text), text
     except (Error, ValueError) as error:
         raise type(error)(f"tool {int(number)}: {error}") from None
+
+
+def tools(texts: Sequence[str]) -> dict[int, tuple[Cutter, str]]:
+    """Cutter and text of several ``--tool`` by number. ValueError where a number is given twice."""
+    found: dict[int, tuple[Cutter, str]] = {}
+    for given in texts:
+        number, cutter, text = tool(given)
+        if number in found:
+            raise ValueError(f"tool {number}: given twice")
+        found[number] = cutter, text
+    return found
