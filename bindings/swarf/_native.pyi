@@ -532,6 +532,16 @@ class Simulation:
         """Volume after, mm3."""
 
 @final
+class Surface:
+    """The surface that a program makes of the stock ``first`` (as it is now, not kept), exactly: the first shape and the
+    sweeps of the cutters in ``tools``. The program can no longer be added to while the surface lives. Immutable, any
+    thread."""
+
+    def __new__(
+        cls, first: Stock, program: Program, tools: dict[int, Cutter], *, progress: Progress = None
+    ) -> Surface: ...
+
+@final
 class Mesh:
     """Triangles: vertices an (n, 3) table in mm, triangles an (m, 3) table of vertex numbers, counter-clockwise seen
     from outside. Immutable, any thread. ValueError for numbers out of range."""
@@ -541,10 +551,21 @@ class Mesh:
     def read(cls, path: Path) -> Mesh:
         """Mesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."""
     @classmethod
-    def from_stock(cls, stock: Stock, error: float = 0.0, *, budget: int = 0, progress: Progress = None) -> Mesh:
+    def from_stock(
+        cls,
+        stock: Stock,
+        error: float = 0.0,
+        *,
+        budget: int = 0,
+        surface: Optional[Surface] = None,
+        moves: Optional[int] = None,
+        progress: Progress = None,
+    ) -> Mesh:
         """The surface of a stock with its edges: closed, oriented outwards, no triangles that cut each other. Vertices
         are left out while the mesh stays within ``error`` mm of the full one, until at most ``budget`` triangles are
-        left (0: as few as the error allows). What it came to is in ``contour``."""
+        left (0: as few as the error allows). Vertices lie exactly on the Surface of which the stock has seen the first
+        ``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. What it came to is in
+        ``contour``."""
     def write(self, path: Path, *, colors: Optional[Table] = None, progress: Progress = None) -> None:
         """Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure
         loses nothing. ``colors`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."""
@@ -621,6 +642,7 @@ class Contour(NamedTuple):
     full_triangles: int
     triangles: int
     sharp_vertices: int
+    exact_vertices: int
     parted_cells: int
     intersections_found: int
     intersections_left: int
