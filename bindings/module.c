@@ -104,13 +104,12 @@ static int module_exec(PyObject *module)
                    add_type(module, &mesh_spec, &state->mesh, 0) || add_type(module, &camera_spec, &state->camera, 0) ||
                    add_type(module, &scene_spec, &state->scene, 0) ||
                    add_type(module, &picture_spec, &state->picture, 0) ||
-                   add_type(module, &surface_spec, &state->surface, 0) ||
                    add_sequence(module, &pick_desc, &state->pick) ||
                    add_sequence(module, &finding_desc, &state->finding) ||
                    add_sequence(module, &comparison_desc, &state->comparison) ||
                    add_sequence(module, &cluster_desc, &state->cluster) ||
-                   add_sequence(module, &check_desc, &state->check) ||
-                   add_type(module, &solid_spec, &state->solid, 0) ||
+                   add_sequence(module, &check_finding_desc, &state->check_finding) ||
+                   add_type(module, &check_spec, &state->check, 0) || add_type(module, &solid_spec, &state->solid, 0) ||
                    add_type(module, &deviation_spec, &state->deviation, 0) ||
                    add_sequence(module, &shell_desc, &state->shell) ||
                    add_sequence(module, &contour_desc, &state->contour)
@@ -128,7 +127,6 @@ static int module_traverse(PyObject *module, visitproc visit, void *arg)
     Py_VISIT(state->mesh);
     Py_VISIT(state->camera);
     Py_VISIT(state->scene);
-    Py_VISIT(state->surface);
     Py_VISIT(state->picture);
     Py_VISIT(state->pick);
     Py_VISIT(state->view);
@@ -136,6 +134,7 @@ static int module_traverse(PyObject *module, visitproc visit, void *arg)
     Py_VISIT(state->comparison);
     Py_VISIT(state->cluster);
     Py_VISIT(state->check);
+    Py_VISIT(state->check_finding);
     Py_VISIT(state->solid);
     Py_VISIT(state->deviation);
     Py_VISIT(state->shell);
@@ -158,7 +157,6 @@ static int module_clear(PyObject *module)
     Py_CLEAR(state->mesh);
     Py_CLEAR(state->camera);
     Py_CLEAR(state->scene);
-    Py_CLEAR(state->surface);
     Py_CLEAR(state->picture);
     Py_CLEAR(state->pick);
     Py_CLEAR(state->view);
@@ -166,6 +164,7 @@ static int module_clear(PyObject *module)
     Py_CLEAR(state->comparison);
     Py_CLEAR(state->cluster);
     Py_CLEAR(state->check);
+    Py_CLEAR(state->check_finding);
     Py_CLEAR(state->solid);
     Py_CLEAR(state->deviation);
     Py_CLEAR(state->shell);

@@ -26,13 +26,13 @@ typedef struct module_state {
     PyTypeObject *mesh;
     PyTypeObject *camera;
     PyTypeObject *scene;
-    PyTypeObject *surface;
     PyTypeObject *picture;
     PyTypeObject *view;
     PyTypeObject *finding; /* struct sequences */
     PyTypeObject *comparison;
     PyTypeObject *cluster;
     PyTypeObject *check;
+    PyTypeObject *check_finding;
     PyTypeObject *solid;
     PyTypeObject *deviation;
     PyTypeObject *shell;
@@ -142,6 +142,8 @@ PyObject *box_to_python(const swarf_box *box);
 
 extern PyType_Spec simulation_spec;
 extern PyStructSequence_Desc finding_desc;
+/** A Simulation; `owner` keeps the handle alive, NULL: it is the object's own. NULL with an exception. */
+PyObject *simulation_wrap(module_state *state, const swarf_simulation *handle, PyObject *owner);
 /** The tool table of a dict {number: Cutter}; it holds its own references, for the dict may change meanwhile. */
 int tools_read(module_state *state, PyObject *dict, swarf_tool **out, size_t *count);
 void tools_free(swarf_tool *tools, size_t count);
@@ -172,14 +174,6 @@ int camera_box(PyObject *box, swarf_box *out);
 extern PyType_Spec scene_spec;
 extern PyType_Spec picture_spec;
 extern PyStructSequence_Desc pick_desc;
-
-/* ---- surface.c ---- */
-
-typedef struct surface_object {
-    PyObject_HEAD swarf_surface *handle;
-    program_object *program; /* kept from growing */
-} surface_object;
-extern PyType_Spec surface_spec;
 
 /* ---- mesh.c ---- */
 
@@ -228,7 +222,8 @@ PyObject *make_sequence(PyTypeObject *type, PyObject **items, Py_ssize_t count);
 
 /* ---- check.c ---- */
 
-extern PyStructSequence_Desc check_desc;
+extern PyStructSequence_Desc check_finding_desc;
+extern PyType_Spec check_spec;
 extern const char stock_check_doc[];
 PyObject *stock_check(PyObject *self, PyObject *args, PyObject *keywords);
 

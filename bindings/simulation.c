@@ -3,7 +3,8 @@
 #include "native.h"
 
 typedef struct simulation_object {
-    PyObject_HEAD swarf_simulation *handle;
+    PyObject_HEAD const swarf_simulation *handle;
+    PyObject *owner; /* of the handle; NULL: the object itself */
 } simulation_object;
 
 static const char *const severity_names[] = {"note", "warning", "error"};
@@ -15,7 +16,9 @@ static const swarf_simulation *handle_of(PyObject *self)
 
 static void simulation_dealloc(PyObject *self)
 {
-    swarf_simulation_destroy(((simulation_object *)self)->handle);
+    simulation_object *simulation = (simulation_object *)self;
+    if (!simulation->owner) swarf_simulation_destroy((swarf_simulation *)simulation->handle);
+    Py_CLEAR(simulation->owner);
     object_free(self);
 }
 
@@ -126,6 +129,16 @@ PyType_Spec simulation_spec = {
     .slots = simulation_slots,
 };
 
+PyObject *simulation_wrap(module_state *state, const swarf_simulation *handle, PyObject *owner)
+{
+    simulation_object *result = (simulation_object *)PyType_GenericAlloc(state->simulation, 0);
+    if (!result) return NULL;
+    result->handle = handle;
+    Py_XINCREF(owner);
+    result->owner = owner;
+    return (PyObject *)result;
+}
+
 /* ---- simulating ---- */
 
 void tools_free(swarf_tool *tools, size_t count)
@@ -206,11 +219,7 @@ PyObject *stock_simulate(PyObject *self, PyObject *args, PyObject *keywords)
     }
     program->readers--;
     tools_free(tools, tool_count);
-    simulation_object *result = failed ? NULL : (simulation_object *)PyType_GenericAlloc(state->simulation, 0);
-    if (!result) {
-        swarf_simulation_destroy(handle);
-        return NULL;
-    }
-    result->handle = handle;
-    return (PyObject *)result;
+    PyObject *result = failed ? NULL : simulation_wrap(state, handle, NULL);
+    if (!result) swarf_simulation_destroy(handle);
+    return result;
 }

@@ -10,7 +10,9 @@ import struct
 import zlib
 from typing import Any, Callable, Optional, Sequence
 
+from . import plots
 from ._native import Camera, Scene, deviation_colours
+from .loads import KINDS
 from .verify import Verdict, Verification
 
 #: Pictures of the whole part, and how many of the worst places get one of their own.
@@ -115,10 +117,14 @@ def histogram(areas: Sequence[float], lo: float, hi: float, tolerance: tuple[flo
     return "".join(parts) + "</svg>"
 
 
+class Markup(str):
+    """A text that is HTML already."""
+
+
 def table(heads: Sequence[str], rows: Sequence[Sequence[Any]], numbers: Sequence[int]) -> str:
-    """An HTML table; cells that are strings are escaped unless they begin with "<"."""
+    """An HTML table; all cells are escaped but those that are Markup."""
     def cell(tag: str, index: int, value: Any) -> str:
-        text = value if isinstance(value, str) and value.startswith("<") else html.escape(str(value))
+        text = value if isinstance(value, Markup) else html.escape(str(value))
         return f"<{tag}{' class=n' if index in numbers else ''}>{text}</{tag}>"
 
     head = "".join(cell("th", index, text) for index, text in enumerate(heads))
@@ -128,15 +134,48 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[Any]], numbers: Sequence
 
 def finding_row(number: int, finding: Verdict) -> list[str]:
     place = "" if finding.place is None else ", ".join(f"{value:.2f}" for value in finding.place)
-    return [str(number), f'<span class="{finding.severity}">{finding.severity}</span>', finding.operation or "",
-            str(finding.line or ""), place, finding.text]
+    text = html.escape(finding.text)
+    if finding.accepted is not None:
+        text += f'<br><span class="dim">accepted: {html.escape(finding.accepted)}</span>'
+    severity = finding.severity if finding.accepted is None else "note"
+    word = finding.severity if finding.accepted is None else f"({finding.severity})"
+    return [str(number), Markup(f'<span class="{severity}">{word}</span>'), finding.operation or "",
+            str(finding.line or ""), place, Markup(text)]
+
+
+def operations(report: dict[str, Any]) -> str:
+    """The table of operations: what each removed, and its peaks where loads were measured."""
+    removed = report["removed_mm3_by_operation"]
+    if "loads" not in report:
+        total = sum(removed.values()) or 1.0
+        return table(["operation", "removed, mm³", "share"],
+                     [[name, f"{value:,.1f}", f"{100 * value / total:.1f} %"] for name, value in removed.items()], (1, 2))
+    heads = ["operation", "time", "removed, mm³", "climb", *(
+        f"{name}, {unit.replace('mm3', 'mm³')}" for _, unit, name in KINDS.values())]
+    rows = []
+    for entry in report["loads"]["operations"]:
+        peaks = [Markup(f'{plots.nice(entry["peaks"][kind]["value"])}<br><span class=dim>line '
+                        f'{entry["peaks"][kind]["line"]}</span>') if kind in entry["peaks"] else "–" for kind in KINDS]
+        climb = "–" if entry["climb"] is None else f"{100 * entry['climb']:.0f} %"
+        rows.append([entry["operation"], plots.clock(entry["seconds"]), f"{removed[entry['operation']]:,.1f}", climb, *peaks])
+    return table(heads, rows, range(1, len(heads))) + (
+        "<p class=dim>Peaks of each operation and the line that makes them; chips where the number of teeth is known. "
+        "Climb: share of the volume that is cut in climb milling.</p>")
+
+
+def load_plots(done: Verification, report: dict[str, Any]) -> str:
+    """The loads over time, under their heading."""
+    if "loads" not in report:
+        return ""
+    drawn = plots.course(report["loads"]["course"], report["operations"], plots.limits_of_all(done.limits))
+    return f"<h2>Loads over time</h2>{drawn}" if drawn else ""
 
 
 def close_ups(done: Verification, scene: Scene) -> list[str]:
     """Figures of the worst places."""
     figures = []
     for number, finding in enumerate(done.findings, 1):
-        if finding.cluster is None or len(figures) == PLACES_SHOWN:
+        if finding.cluster is None or finding.accepted is not None or len(figures) == PLACES_SHOWN:
             continue
         lo, hi = finding.cluster.box
         margin = max(1.0, 0.35 * max(h - l for l, h in zip(lo, hi)))
@@ -146,6 +185,11 @@ def close_ups(done: Verification, scene: Scene) -> list[str]:
         figures.append(f"<figure>{image(data, f'finding {number}')}<figcaption><b>{number}</b> "
                        f"{html.escape(finding.text)}</figcaption></figure>")
     return figures
+
+
+def count(number: int, noun: str) -> str:
+    """A number of things."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def facts(items: Sequence[tuple[str, str]]) -> str:
@@ -169,18 +213,18 @@ def make(done: Verification, report: dict[str, Any], progress: Optional[Callable
     plus, minus = done.tolerance
     volumes, minutes = deviation.comparison, report["machine_seconds"] / 60
     percentiles = found["deviation_mm"]["percentiles"]
-    errors = sum(finding.severity == "error" for finding in done.findings)
-    warnings = sum(finding.severity == "warning" for finding in done.findings)
-    removed = report["removed_mm3_by_operation"]
-    total = sum(removed.values()) or 1.0
-    bars = [[name, f"{value:,.1f}", f"{100 * value / total:.1f} %"] for name, value in removed.items()]
+    counts = [count(sum(finding.severity == severity and finding.accepted is None for finding in done.findings), severity)
+              for severity in ("error", "warning")]
+    accepted = sum(finding.accepted is not None for finding in done.findings)
+    if accepted:
+        counts.append(f"{accepted} accepted")
     now = datetime.datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
     parts = [
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
         f"<title>{html.escape(job.name)}: {verdict}</title><style>{STYLE}</style></head><body>",
         f"<header><div><h1>{html.escape(job.name)}</h1><p class=dim>{html.escape(report['input'])}<br>{now}</p></div>"
         f'<div class="verdict {verdict}">{verdict.upper()}</div></header>',
-        f"<p>{errors} errors, {warnings} warnings. Tolerance +{plus:g} / −{minus:g} mm"
+        f"<p>{', '.join(counts)}. Tolerance +{plus:g} / −{minus:g} mm"
         f"{f', allowance {done.allowance:g} mm' if done.allowance else ''}. Voxel {report['voxel_mm']:.4g} mm; a value on "
         f"a smooth face is good to {deviation.error:.2g} mm, within a voxel of an edge to {0.5 * report['voxel_mm']:.2g} "
         "mm, where only what is beyond tolerance by more than that counts.</p>",
@@ -199,13 +243,14 @@ def make(done: Verification, report: dict[str, Any], progress: Optional[Callable
               [finding_row(number, finding) for number, finding in enumerate(done.findings, 1)], (3,))
         if done.findings else "<p>None.</p>",
         f"<h2>The worst places</h2><div class='pictures places'>{''.join(places)}</div>" if places else "",
-        "<h2>Operations</h2>", table(["operation", "removed, mm³", "share"], bars, (1, 2)),
+        "<h2>Operations</h2>", operations(report), load_plots(done, report),
         f"<p>{report['moves']:,} moves; {minutes:.1f} min at the programmed feeds, without acceleration. Stock "
         f"{report['volume_mm3']['initial']:,.1f} mm³, left {report['volume_mm3']['final']:,.1f} mm³, design "
         f"{volumes.design_mm3:,.1f} mm³.</p>",
         "<h2>Tools</h2>",
-        table(["", "name", "diameter, mm"], [[f"T{tool['number']}", tool["name"], f"{tool['diameter_mm']:.4g}"]
-                                             for tool in report["tools"]], (2,)),
+        table(["", "name", "diameter, mm", "teeth"],
+              [[f"T{tool['number']}", tool["name"], f"{tool['diameter_mm']:.4g}", job.teeth.get(tool["number"], "–")]
+               for tool in report["tools"]], (2, 3)),
         "".join(f"<p class=note>{html.escape(note)}</p>" for note in job.notes),
         f"<p class=dim>Swarf {html.escape(report['version'])}; {report['threads']} threads, {report['isa']}; cutting "
         f"{report['seconds']['cut']:.2f} s, comparing {report['seconds'].get('compare', 0.0):.2f} s.</p></body></html>",

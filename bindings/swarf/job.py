@@ -32,3 +32,4 @@ class Job:
     stock: Optional[dict[str, Any]] = None
     design: Optional[Mesh] = None
     notes: list[str] = field(default_factory=list)
+    teeth: dict[int, int] = field(default_factory=dict)  #: cutting edges around each tool, where they are known

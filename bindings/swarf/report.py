@@ -7,9 +7,9 @@ import os
 import tempfile
 from typing import Any, Optional
 
-from . import _native, timing
+from . import _native, loads, timing
 from .simulate import Result
-from .verify import Verification
+from .verify import Verification, operation_of
 
 
 def _unique(names: tuple[str, ...]) -> list[str]:
@@ -116,18 +116,47 @@ def make_verification(done: Verification, input_path: str, seconds_read: float =
         },
         "histogram": {"lo": -reach, "hi": reach, "area_mm2": list(deviation.histogram(-reach, reach, 80))},
     }
+    if done.loads is not None:
+        made["loads"] = _loads(done, made["operations"])
     made["findings"] = [
         {
             "severity": finding.severity,
+            "kind": finding.kind,
             "text": finding.text,
             "operation": finding.operation,
             "line": finding.line,
             "move": finding.move,
             "place": None if finding.place is None else list(finding.place),
+            "amount": finding.amount,
+            "accepted": finding.accepted,
         }
         for finding in done.findings
     ]
     return made
+
+
+def _loads(done: Verification, names: list[str]) -> dict[str, Any]:
+    """Peaks by operation with the lines of the moves that make them, and the course over time."""
+    program, times = done.result.job.program, done.result.job.program.times()
+    assert done.loads is not None
+    operations = []
+    for name, part in zip(names, loads.summaries(program, done.loads, times)):
+        operations.append({
+            "operation": name,
+            "seconds": part.seconds,
+            "seconds_cutting": part.cutting,
+            "volume_mm3": part.volume,
+            "climb": part.climb,
+            "peaks": {kind: {"value": peak.value, "unit": loads.KINDS[kind][1], "move": peak.move,
+                             "line": operation_of(done.result.job, peak.move)[1]}
+                      for kind, peak in part.peaks.items()},
+        })
+    return {
+        "limits": {"all" if tool is None else str(tool): dict(entries) for tool, entries in done.limits.items()},
+        "teeth": {str(tool): teeth for tool, teeth in sorted(done.result.job.teeth.items())},
+        "operations": operations,
+        "course": loads.course(program, done.loads, times),
+    }
 
 
 def _mesh(mesh: Optional[_native.Mesh]) -> Optional[dict[str, Any]]:

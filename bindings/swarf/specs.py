@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any, Sequence
+from typing import Any
 
 from ._native import Cutter, Error, Mesh
 from .simulate import MESH_SUFFIXES, STOCK_SUFFIXES
@@ -50,26 +50,29 @@ def stock(spec: str) -> dict[str, Any]:
     raise ValueError(f"stock {spec!r}: wanted {STOCK_HELP} ({', '.join(MESH_SUFFIXES + STOCK_SUFFIXES)})")
 
 
-def tool(spec: str) -> tuple[int, Cutter, str]:
-    """Number, cutter and text of a ``--tool``, e.g. ``1=flat:d=3,l=18``. ValueError, FormatError."""
+def tool(spec: str) -> tuple[int, Cutter, str, int]:
+    """Number, cutter, text and teeth (0: not told) of a ``--tool``, e.g. ``1=flat:d=3,l=18,teeth=2``. ValueError,
+    FormatError."""
     number, equals, text = spec.partition("=")
     # isdecimal() is true of other scripts' digits too; int() reads them as well.
     if not equals or not number.strip().isdecimal():
         raise ValueError(f"tool {spec!r}: wanted NUMBER=SHAPE, e.g. 1=flat:d=3,l=18")
     if len(number) > 9 or int(number) > MOST_TOOL:
         raise ValueError(f"tool {spec!r}: numbers up to {MOST_TOOL} are possible")
+    shape, teeth = _teeth(int(number), text)
     try:
-        return int(number), Cutter(text), text
+        return int(number), Cutter(shape), shape, teeth
     except (Error, ValueError) as error:
         raise type(error)(f"tool {int(number)}: {error}") from None
 
 
-def tools(texts: Sequence[str]) -> dict[int, tuple[Cutter, str]]:
-    """Cutter and text of several ``--tool`` by number. ValueError where a number is given twice."""
-    found: dict[int, tuple[Cutter, str]] = {}
-    for given in texts:
-        number, cutter, text = tool(given)
-        if number in found:
-            raise ValueError(f"tool {number}: given twice")
-        found[number] = cutter, text
-    return found
+def _teeth(number: int, text: str) -> tuple[str, int]:
+    """A tool's text without the word that tells its cutting edges, and their number; 0: not told."""
+    words = text.split(",")
+    told = [word for word in words if word.strip().startswith("teeth=")]
+    if not told:
+        return text, 0
+    count = told[0].partition("=")[2].strip()
+    if len(told) > 1 or not count.isdecimal() or not 0 < int(count) <= 1000:
+        raise ValueError(f"tool {number}: {','.join(told)}: one number of teeth, 1 .. 1000, is wanted")
+    return ",".join(word for word in words if word not in told), int(count)

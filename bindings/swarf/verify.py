@@ -8,9 +8,13 @@ import time
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Sequence
 
-from ._native import CheckFinding, Cluster, Deviation, Mesh, Scene, Solid, Stock, compare_place, measure_deviation
+from . import accept as accepting
+from . import loads as loading
+from ._native import Check, Cluster, Deviation, Mesh, Scene, Solid, Stock, compare_place, measure_deviation
+from .accept import Acceptance
 from .job import Job
-from .simulate import Progress, Result, make_stock, simulate
+from .loads import Limits
+from .simulate import Progress, Result, make_stock
 
 #: What a design file can be, by its suffix.
 DESIGN_SUFFIXES = (".stl", ".ply", ".obj")
@@ -18,15 +22,21 @@ DESIGN_SUFFIXES = (".stl", ".ply", ".obj")
 
 @dataclass
 class Verdict:
-    """Something that was found: severity "error", "warning" or "note"."""
+    """Something that was found: severity "error", "warning" or "note"; kind "gouge", "excess", "not reached" (deviation),
+    those of CheckFinding, "load", "uncut" (moves that were not simulated, operations that remove nothing), "design" or
+    "acceptance". ``amount`` is what was measured: mm of a deviation or contact, the value of a load. ``accepted`` is the
+    reason why it does not count, None: it does."""
 
     severity: str
     text: str
+    kind: str
     operation: Optional[str] = None
     line: int = 0
     move: int = -1
     place: Optional[tuple[float, float, float]] = None
     cluster: Optional[Cluster] = None
+    amount: Optional[float] = None
+    accepted: Optional[str] = None
 
 
 @dataclass
@@ -40,11 +50,13 @@ class Verification:
     allowance: float
     findings: list[Verdict] = field(default_factory=list)
     complete: bool = False  #: whether material that no move went to counts as an error
+    loads: Optional[dict[str, memoryview]] = None  #: Check.loads, None: not asked for
+    limits: Limits = field(default_factory=dict)
 
     @property
     def passed(self) -> bool:
-        """Whether nothing of class error was found."""
-        return not any(finding.severity == "error" for finding in self.findings)
+        """Whether nothing of class error was found that is not accepted."""
+        return not any(finding.severity == "error" and finding.accepted is None for finding in self.findings)
 
     def scene(self) -> Scene:
         """A Scene of what is left of the stock."""
@@ -74,6 +86,9 @@ def verify(
     resolution: Optional[float] = None,
     fixtures: Sequence[Mesh] = (),
     clearance: float = 0.0,
+    loads: bool = True,
+    limits: Optional[Limits] = None,
+    accept: Sequence[Acceptance] = (),
     progress: Optional[Progress] = None,
 ) -> Verification:
     """Simulate a job and hold what is left of its stock against a design, the job's own unless given.
@@ -83,34 +98,49 @@ def verify(
     ``complete`` an error. Rapids through material, shanks and holders that touch it, and all else that Stock.check()
     looks for are findings too, as are moves that cannot be simulated (turned axes) and
     operations that remove nothing; ``fixtures`` and ``clearance`` are
-    handed to it. ValueError without a design; GeometryError where it encloses nothing; whatever simulate() raises.
+    handed to it. ``loads`` measures what each move asks of its tool; beyond ``limits`` (see swarf.loads) it is a
+    warning. Findings that ``accept`` knows do not fail. ValueError without a design or moves; GeometryError where the
+    design encloses nothing; whatever make_stock() and Stock.check() raise.
     """
     mesh = job.design if design is None else design
     if mesh is None:
         raise ValueError(f"{job.name}: there is no design to verify against")
-    limits = (tolerance if excess is None else excess, tolerance if gouge is None else gouge)
+    if len(job.program) == 0:
+        raise ValueError(f"{job.name}: the program has no moves: there is nothing to verify")
+    tolerances = (tolerance if excess is None else excess, tolerance if gouge is None else gouge)
+    limits = limits or {}
+    loading.check_limits(limits)
+    seconds: dict[str, float] = {}
 
-    def stage(name: str) -> Optional[Callable[[float], Any]]:
-        return None if progress is None else lambda fraction: progress(name, fraction)
+    def timed(name: str, work: Callable[[Optional[Callable[[float], Any]]], Any]) -> Any:
+        started = time.perf_counter()
+        try:
+            return work(None if progress is None else lambda fraction: progress(name, fraction))
+        finally:
+            seconds[name] = time.perf_counter() - started
 
-    solid = Solid(mesh, progress=stage("design"))
-    result = simulate(job, voxel=voxel, resolution=resolution, compare=False, mesh=False, progress=progress)
-    first = make_stock(job.stock, voxel=None if job.stock and job.stock["kind"] == "vdb" else result.stock.voxel)
     started = time.perf_counter()
-    checked = first.copy().check(
-        job.program, job.tools, fixtures=[Solid(fixture) for fixture in fixtures], clearance=clearance,
-        progress=stage("check"))
-    result.seconds["check"] = time.perf_counter() - started
-    started = time.perf_counter()
-    deviation = measure_deviation(
-        result.stock, solid, excess=limits[0], gouge=limits[1], allowance=allowance, region=region, first=first,
-        program=job.program, tools=job.tools, progress=stage("compare"))
-    result.seconds["compare"] = time.perf_counter() - started
-    result.seconds["total"] += result.seconds["check"] + result.seconds["compare"]
+    solid = timed("design", lambda report: Solid(mesh, progress=report))
+    clamps = [Solid(fixture) for fixture in fixtures]
+    first = timed("stock", lambda report: make_stock(job.stock, voxel=voxel, resolution=resolution, progress=report))
+    stock = first.copy()
+    checked = timed("cut", lambda report: stock.check(
+        job.program, job.tools, fixtures=clamps, clearance=clearance, teeth=job.teeth, loads=loads or bool(limits),
+        progress=report))
+    result = Result(job, stock, checked.simulation, seconds=seconds)
+    deviation = timed("compare", lambda report: measure_deviation(
+        stock, solid, excess=tolerances[0], gouge=tolerances[1], allowance=allowance, region=region, first=first,
+        program=job.program, tools=job.tools, progress=report))
+    seconds["total"] = time.perf_counter() - started
     result.comparison = deviation.comparison
-    made = Verification(result, solid, deviation, limits, allowance, complete=complete)
-    made.findings = _check_findings(job, checked) + _uncut_findings(job, result, checked) + _design_findings(solid, first, mesh) + [
-        _cluster_finding(job, cluster, complete) for cluster in deviation.clusters]
+    made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
+                        limits=limits)
+    made.findings = [*_check_findings(job, checked), *_uncut_findings(job, checked), *_load_findings(job, checked, limits),
+                     *_design_findings(solid, first, mesh),
+                     *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
+    for idle in accepting.apply(accept, made.findings):
+        made.findings.append(Verdict("note", f"nothing is found any more of what is accepted because {idle.reason!r}",
+                                     "acceptance", idle.operation, idle.line or 0, place=idle.place))
     return made
 
 
@@ -126,31 +156,46 @@ def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:
     return (names[index] if 0 <= index < len(names) else None), line
 
 
-def _check_findings(job: Job, checked: Sequence[CheckFinding]) -> list[Verdict]:
+def _check_findings(job: Job, checked: Check) -> list[Verdict]:
     names = job.program.operations
-    return [Verdict(found.severity, found.text, names[found.operation] if 0 <= found.operation < len(names) else None,
-                    found.line, found.move, found.tip) for found in checked]
+    return [Verdict(found.severity, found.text, found.kind,
+                    names[found.operation] if 0 <= found.operation < len(names) else None, found.line, found.move,
+                    found.tip, amount=found.depth) for found in checked.findings]
 
 
-def _uncut_findings(job: Job, result: Result, checked: Sequence[CheckFinding]) -> list[Verdict]:
+def _uncut_findings(job: Job, checked: Check) -> list[Verdict]:
     """What the simulation says of moves that cut nothing, less what the checks tell as well (missing tools)."""
-    told = {found.operation for found in checked if found.kind == "tool"}
-    return [Verdict(found.severity, found.text, *operation_of(job, found.move), found.move)
-            for found in result.simulation.findings if found.operation not in told]
+    told = {found.operation for found in checked.findings if found.kind == "tool"}
+    return [Verdict(found.severity, found.text, "uncut", *operation_of(job, found.move), found.move)
+            for found in checked.simulation.findings if found.operation not in told]
+
+
+def _load_findings(job: Job, checked: Check, limits: Limits) -> list[Verdict]:
+    if checked.loads is None or not limits:
+        return []
+    return [Verdict("warning", found.text, "load", *operation_of(job, found.move), found.move,
+                    _end_of(job, found.move), amount=found.value)
+            for found in loading.exceeded(job.program, checked.loads, limits)]
+
+
+def _end_of(job: Job, move: int) -> tuple[float, float, float]:
+    """Where a move ends."""
+    x, y, z, *_ = MOVE.unpack_from(job.program.moves, move * MOVE.size)
+    return x, y, z
 
 
 def _design_findings(solid: Solid, first: Stock, mesh: Mesh) -> list[Verdict]:
     found = []
     doubt = compare_place(first, solid)
     if doubt:
-        found.append(Verdict("warning", doubt))
+        found.append(Verdict("warning", doubt, "design"))
     if solid.open_edges or solid.turned_edges:
         found.append(Verdict("warning", f"the design is not closed: {solid.open_edges} open edges, {solid.turned_edges} "
                              f"between triangles turned different ways; the holes have at most {solid.hole_mm2:.3g} mm2 "
-                             "and inside is told by the winding number"))
+                             "and inside is told by the winding number", "design"))
     if solid.crossing_triangles:
         found.append(Verdict("note", f"{solid.crossing_triangles} of the design's {mesh.triangle_count} triangles cross "
-                             "or touch others; it is taken as the union of what they enclose"))
+                             "or touch others; it is taken as the union of what they enclose", "design"))
     return found
 
 
@@ -168,4 +213,5 @@ def _cluster_finding(job: Job, cluster: Cluster, complete: bool) -> Verdict:
             text += f"; the nearest cut stays {cluster.away:.3f} mm away"
     else:
         severity, text = "error" if complete else "warning", f"not reached: {amount} left where no move went"
-    return Verdict(severity, text, operation, line, cluster.moves[0] if cluster.moves else -1, cluster.place, cluster)
+    return Verdict(severity, text, cluster.kind, operation, line, cluster.moves[0] if cluster.moves else -1,
+                   cluster.place, cluster, cluster.value)

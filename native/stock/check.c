@@ -8,7 +8,9 @@
 #include "base/parallel.h"
 #include "base/status.h"
 #include "stock/cut.h"
+#include "stock/load.h"
 #include "stock/mesh.h"
+#include "stock/simulate.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,17 +25,20 @@ static const double stock_depth = 0.06, solid_depth = 0.35;
  */
 static const double instant = 0.02, endless = 500;
 
-/* Findings of one kind in one operation, and moves in a batch. */
-enum { MOST_FINDINGS = 20, MOST_AT_ONCE = 1 << 16, MOST_TARGETS = 64 };
+/* Findings of one kind in one operation, and fixtures. */
+enum { MOST_FINDINGS = 20, MOST_TARGETS = 64 };
 
 struct swarf_check {
     swarf_check_finding *findings;
     size_t count, room;
+    swarf_simulation *simulation;
+    swarf_loads *loads; /* NULL: not asked for */
 };
 
 /* A part of a tool, ready to be swept; NULL where the tool has none. */
 struct tool {
     const swarf_cutter *cutter;
+    int32_t teeth;
     swarf_body *flutes, *shank, *holder, *wide_holder, *above; /* above: beyond the flutes, where nothing else is */
     int ready;
 };
@@ -64,6 +69,11 @@ struct player {
     size_t first, count;
     swarf_path *paths;
     size_t path_room;
+    size_t *numbers; /* of the moves whose paths these are */
+    size_t number_room;
+    int32_t operation, tool; /* of the batch */
+    size_t batch_first, batch_count;
+    double from, to;              /* its part of the progress */
     int found[SWARF_CHECK_COUNT]; /* in this operation */
     int stopped;
     int known; /* 1 once a move of this tool has been seen */
@@ -87,8 +97,21 @@ swarf_check_options swarf_check_options_default(void)
 
 void swarf_check_destroy(swarf_check *check)
 {
-    if (check) free(check->findings);
+    if (!check) return;
+    swarf_simulation_destroy(check->simulation);
+    swarf_loads_destroy(check->loads);
+    free(check->findings);
     free(check);
+}
+
+const swarf_simulation *swarf_check_simulation(const swarf_check *check)
+{
+    return check ? check->simulation : NULL;
+}
+
+const swarf_loads *swarf_check_loads(const swarf_check *check)
+{
+    return check ? check->loads : NULL;
 }
 
 const swarf_check_finding *swarf_check_findings(const swarf_check *check, size_t *count)
@@ -135,10 +158,12 @@ static swarf_status make_above(const swarf_cutter *cutter, swarf_cutter **out)
     return swarf_cutter_create(&part, 1, out);
 }
 
-static swarf_status prepare(const struct player *p, const swarf_cutter *cutter, struct tool *tool)
+static swarf_status prepare(const struct player *p, const swarf_tool *entry, struct tool *tool)
 {
     const double voxel = swarf_stock_voxel(p->stock);
+    const swarf_cutter *cutter = entry->cutter;
     tool->cutter = cutter;
+    tool->teeth = entry->teeth;
     tool->ready = 1;
     SWARF_TRY(swarf_body_create(cutter, SWARF_PART_FLUTES, voxel, &tool->flutes));
     SWARF_TRY(swarf_body_create(cutter, SWARF_PART_SHANK, voxel, &tool->shank));
@@ -170,7 +195,7 @@ static swarf_status find_tool(struct player *p, int32_t number, struct tool **ou
     *out = NULL;
     for (size_t i = 0; i < p->tool_count; i++) {
         if (p->tools[i].number != number || !p->tools[i].cutter) continue;
-        if (!p->prepared[i].ready) SWARF_TRY(prepare(p, p->tools[i].cutter, &p->prepared[i]));
+        if (!p->prepared[i].ready) SWARF_TRY(prepare(p, &p->tools[i], &p->prepared[i]));
         *out = &p->prepared[i];
         return SWARF_OK;
     }
@@ -344,18 +369,36 @@ static size_t make_tests(const struct player *p, const struct tool *tool, struct
     return kept;
 }
 
-/* Paths of the moves first .. end - 1 that move; of rapids, feeds or both. */
+/* Paths of the moves first .. end - 1 that move and can be simulated; of rapids, feeds or both. */
 static swarf_status take_paths(struct player *p, size_t first, size_t end, int rapids, int feeds, size_t *count)
 {
     const swarf_move *moves = swarf_program_moves(p->program);
+    double from[6], to[6];
     SWARF_TRY(swarf_array_reserve((void **)&p->paths, &p->path_room, end - first, sizeof *p->paths));
+    SWARF_TRY(swarf_array_reserve((void **)&p->numbers, &p->number_room, end - first, sizeof *p->numbers));
     *count = 0;
     for (size_t i = first; i < end; i++) {
         if (!(swarf_move_get_kind(&moves[i]) == SWARF_MOVE_RAPID ? rapids : feeds)) continue;
         SWARF_TRY(swarf_program_path(p->program, i, &p->paths[*count]));
-        *count += p->paths[*count].has_motion != 0;
+        if (!p->paths[*count].has_motion || swarf_program_move_axes(p->program, i, from, to)) continue;
+        p->numbers[(*count)++] = i;
     }
     return SWARF_OK;
+}
+
+static swarf_status cut(struct player *p, const struct tool *tool, size_t first, size_t end)
+{
+    size_t count;
+    SWARF_TRY(take_paths(p, first, end, 1, 1, &count));
+    if (count == 0) return SWARF_OK;
+    p->known = 1;
+    if (p->stopped) return SWARF_OK;
+    if (!p->result->loads || !tool->flutes->component_count)
+        return swarf_cut_body(p->stock, tool->flutes, p->paths, count, NULL, 0, 1);
+    const swarf_load_batch batch = {p->program, tool->cutter, tool->flutes, tool->teeth, p->first};
+    const double from = p->from + (p->to - p->from) * (double)(first - p->batch_first) / (double)p->batch_count;
+    const double to = p->from + (p->to - p->from) * (double)(end - p->batch_first) / (double)p->batch_count;
+    return swarf_loads_cut(p->result->loads, p->stock, &batch, p->numbers, count, p->progress, from, to);
 }
 
 /* Moves first .. end - 1, of which only these tests may answer yes. */
@@ -387,18 +430,23 @@ static swarf_status play_range(struct player *p, const struct tool *tool, size_t
         if (status == SWARF_OK) status = report_contact(p, &open[i], first, &path);
     }
     free(open);
-    if (status == SWARF_OK) status = take_paths(p, first, end, 1, 1, &count);
-    if (count) p->known = 1;
-    if (status == SWARF_OK && count && !p->stopped)
-        status = swarf_cut_body(p->stock, tool->flutes, p->paths, count, NULL, 0, 1);
-    return status;
+    return status == SWARF_OK ? cut(p, tool, first, end) : status;
 }
 
-static swarf_status play_batch(struct player *p, size_t first, size_t end)
+static swarf_status play_batch(void *context, size_t first, size_t end, double from, double to, int *stop)
 {
+    struct player *p = context;
     const swarf_section *section =
         &swarf_program_sections(p->program)[swarf_move_get_section(&swarf_program_moves(p->program)[first])];
     struct tool *tool;
+    p->from = from;
+    p->to = to;
+    p->batch_first = first;
+    p->batch_count = end - first;
+    if (first == p->first || section->operation != p->operation) memset(p->found, 0, sizeof p->found);
+    if (section->tool != p->tool) p->known = 0;
+    p->operation = section->operation;
+    p->tool = section->tool;
     SWARF_TRY(find_tool(p, section->tool, &tool));
     int moving = 0;
     for (size_t i = first; i < end && !p->stopped; i++) {
@@ -413,34 +461,11 @@ static swarf_status play_batch(struct player *p, size_t first, size_t end)
         }
         SWARF_TRY(check_words(p, i, &path, tool));
     }
-    if (!tool || !moving || p->stopped) return SWARF_OK;
     struct test tests[MOST_TESTS];
-    return play_range(p, tool, first, end, tests, make_tests(p, tool, tests));
-}
-
-static swarf_status play(struct player *p)
-{
-    const swarf_move *moves = swarf_program_moves(p->program);
-    const swarf_section *sections = swarf_program_sections(p->program);
-    const size_t last = p->first + p->count;
-    for (size_t i = p->first; i < last && !p->stopped;) {
-        const swarf_section *section = &sections[swarf_move_get_section(&moves[i])];
-        size_t end = i + 1;
-        while (end < last && end - i < MOST_AT_ONCE) {
-            const swarf_section *next = &sections[swarf_move_get_section(&moves[end])];
-            if (next->tool != section->tool || next->operation != section->operation) break;
-            end++;
-        }
-        SWARF_TRY(play_batch(p, i, end));
-        SWARF_TRY(swarf_progress_report(p->progress, (double)(end - p->first) / (double)p->count));
-        if (end < last) {
-            const swarf_section *next = &sections[swarf_move_get_section(&moves[end])];
-            if (next->operation != section->operation) memset(p->found, 0, sizeof p->found);
-            if (next->tool != section->tool) p->known = 0;
-        }
-        i = end;
-    }
-    return SWARF_OK;
+    swarf_status status = SWARF_OK;
+    if (tool && moving && !p->stopped) status = play_range(p, tool, first, end, tests, make_tests(p, tool, tests));
+    *stop = p->stopped;
+    return status;
 }
 
 static int compare_findings(const void *left, const void *right)
@@ -473,7 +498,10 @@ static swarf_status run(struct player *p)
     p->result = calloc(1, sizeof *p->result);
     if (!p->prepared || !p->result) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
     SWARF_TRY(make_targets(p));
-    SWARF_TRY(play(p));
+    if (p->options->loads) SWARF_TRY(swarf_loads_create(p->count, &p->result->loads));
+    const swarf_watch watch = {play_batch, p};
+    SWARF_TRY(swarf_simulate_watched(p->stock, p->program, p->first, p->count, p->tools, p->tool_count, NULL,
+                                     p->progress, &watch, &p->result->simulation));
     if (p->result->count) qsort(p->result->findings, p->result->count, sizeof *p->result->findings, compare_findings);
     return SWARF_OK;
 }
@@ -512,6 +540,7 @@ swarf_status swarf_stock_check(swarf_stock *stock, const swarf_program *program,
     for (size_t i = 0; i < MOST_TARGETS; i++) swarf_stock_destroy(p.targets[i]);
     free(p.prepared);
     free(p.paths);
+    free(p.numbers);
     swarf_stock_leave(stock);
     if (status != SWARF_OK) {
         swarf_check_destroy(p.result);

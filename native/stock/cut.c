@@ -20,10 +20,12 @@
 
 enum { COLUMN = 32, COLUMN_LEAVES = COLUMN / SWARF_LEAF_DIM, NODE_COLUMNS = SWARF_NODE_DIM / COLUMN };
 
-/* How deep tracks go into the stock at most, in one column: where in voxels of the layout. */
+/* What is seen of one column while it is worked on: how deep tracks go into the stock at most, and where in voxels of
+ * the layout; or how much they remove. */
 struct touch {
     float depth; /* mm */
     int32_t ijk[3];
+    double removed; /* voxels */
 };
 
 struct cut_work {
@@ -39,6 +41,7 @@ struct cut_work {
     swarf_column *scratch; /* one per thread */
     int scratch_count;
     struct touch *touches; /* one per column with tracks: nothing is cut, only looked for; else NULL */
+    int measured;          /* 1: it is cut all the same, and the touches tell how much was removed */
     float enough;          /* depth from which on it need not be looked for any more */
     int *found;            /* 1 once that deep a place is known; only by atomic operations */
 };
@@ -73,21 +76,38 @@ static int occupied(const swarf_tree_layout *layout, int32_t x, int32_t y, int32
 static void see_touch(struct touch *touch, float depth, int32_t x, int32_t y, int32_t z)
 {
     if (depth <= touch->depth) return;
-    *touch = (struct touch){depth, {x, y, z}};
+    *touch = (struct touch){.depth = depth, .ijk = {x, y, z}};
+}
+
+/* Material in a slot, in voxels. */
+static double slot_material(const struct cut_work *work, const struct place *place, int32_t x, int32_t y, int32_t z)
+{
+    const int32_t corner[3] = {x * SWARF_LEAF_DIM, y * SWARF_LEAF_DIM, z * SWARF_LEAF_DIM};
+    const float scale = (float)(1 / work->layout->voxel),
+                *values = swarf_tree_leaf(work->stock->tree, place->node, place->slot);
+    _Alignas(64) float face[SWARF_LEAF_SIZE];
+    uint64_t mask[8];
+    float least;
+    if (!values && !(work->stock->untouched && swarf_block_reaches(work->stock, corner))) return SWARF_LEAF_SIZE;
+    if (!values) swarf_block_fill(work->stock, corner, face, mask, &least);
+    return work->kernel->occupancy(values ? values : face, scale);
 }
 
 static void remove_cube(const struct cut_work *work, struct touch *touch, int32_t x, int32_t y, int32_t z, int edge)
 {
     const int32_t middle = edge * SWARF_LEAF_DIM / 2;
-    if (touch) {
+    if (touch && !work->measured) {
         see_touch(touch, work->layout->background, x * SWARF_LEAF_DIM + middle, y * SWARF_LEAF_DIM + middle,
                   z * SWARF_LEAF_DIM + middle);
         return;
     }
     for (int i = 0; i < edge * edge * edge; i++) {
-        const struct place place = place_of(work->layout, x + i / (edge * edge), y + i / edge % edge, z + i % edge);
+        const int32_t at[3] = {x + i / (edge * edge), y + i / edge % edge, z + i % edge};
+        const struct place place = place_of(work->layout, at[0], at[1], at[2]);
         const uint64_t word = work->layout->occupied[place.node * SWARF_NODE_WORDS + (place.slot >> 6)];
-        if (word >> (place.slot & 63) & 1) swarf_tree_tile(work->stock->tree, place.node, place.slot, 0);
+        if (!(word >> (place.slot & 63) & 1)) continue;
+        if (touch) touch->removed += slot_material(work, &place, at[0], at[1], at[2]);
+        swarf_tree_tile(work->stock->tree, place.node, place.slot, 0);
     }
 }
 
@@ -127,7 +147,10 @@ static swarf_status cut_leaf(const struct cut_work *work, struct touch *touch, c
         if (!cut.solid) swarf_block_fill(work->stock, corner, fresh, cut.mask, &cut.least);
     }
     _Alignas(64) float before[SWARF_LEAF_SIZE];
-    if (touch) { /* on a copy */
+    const float scale = 1 / cut.voxel;
+    if (touch && work->measured)
+        touch->removed += cut.solid ? SWARF_LEAF_SIZE : work->kernel->occupancy(cut.values, scale);
+    else if (touch) { /* on a copy */
         if (touch->depth > work->enough) {
             __atomic_store_n(work->found, 1, __ATOMIC_RELAXED);
             return SWARF_OK;
@@ -136,8 +159,11 @@ static swarf_status cut_leaf(const struct cut_work *work, struct touch *touch, c
         if (stored) memcpy(fresh, stored, sizeof fresh);
         cut.values = fresh;
     }
-    if (!work->kernel->cut(work->body, column, list, count, &cut)) return SWARF_OK;
-    if (touch) {
+    const int changed = work->kernel->cut(work->body, column, list, count, &cut);
+    if (touch && work->measured)
+        touch->removed -= cut.solid && !changed ? SWARF_LEAF_SIZE : work->kernel->occupancy(cut.values, scale);
+    if (!changed) return SWARF_OK;
+    if (touch && !work->measured) {
         touch_leaf(work, touch, cut.solid ? NULL : before, fresh, corner);
         return SWARF_OK;
     }
@@ -369,10 +395,11 @@ static void keep_scratch(struct scratch *scratch)
     free_scratch(__atomic_exchange_n(&kept_scratch, scratch, __ATOMIC_ACQ_REL));
 }
 
-/* Cut the first tracks of a list as one batch, or with `deepest` only see how deep they go; *done: how many. */
+/* Cut the first tracks of a list as one batch, or with `deepest` only see how deep they go (`measured`: cut them and
+ * see how much goes); *done: how many. */
 static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,
                               const swarf_progress *progress, double from, double to, struct touch *deepest,
-                              float enough, size_t *done)
+                              int measured, float enough, size_t *done)
 {
     const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     struct bins bins = {0};
@@ -393,17 +420,21 @@ static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const 
                                 scratch->columns,
                                 scratch->count,
                                 NULL,
+                                measured,
                                 enough,
                                 NULL};
         int found = 0;
-        if (deepest) work.found = &found;
+        if (deepest && !measured) work.found = &found;
         if (deepest && !(work.touches = calloc(bins.column_count + 1, sizeof *work.touches)))
             status = swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
         if (status == SWARF_OK)
             status =
                 swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, from + (to - from) * share);
         for (size_t i = 0; deepest && status == SWARF_OK && i < bins.column_count; i++)
-            if (work.touches[i].depth > deepest->depth) *deepest = work.touches[i];
+            if (measured)
+                deepest->removed += work.touches[i].removed;
+            else if (work.touches[i].depth > deepest->depth)
+                *deepest = work.touches[i];
         free(work.touches);
     }
     keep_scratch(scratch);
@@ -422,7 +453,7 @@ static swarf_status cut_tracks(swarf_stock *stock, const swarf_body *body, const
     for (size_t first = 0, done = 0; first < list->count; first += done) {
         const double at = from + (to - from) * (double)first / (double)list->count;
         SWARF_TRY(cut_batch(stock, body, list->tracks + first, list->count - first,
-                            progress && progress->fn ? &patient : NULL, at, to, NULL, 0, &done));
+                            progress && progress->fn ? &patient : NULL, at, to, NULL, 0, 0, &done));
         if (deferred.cancelled) return swarf_fail(SWARF_ERROR_CANCELLED, "cancelled");
     }
     return swarf_progress_report(progress, to);
@@ -443,6 +474,18 @@ swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const sw
     return status;
 }
 
+swarf_status swarf_cut_measured(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,
+                                double *removed)
+{
+    const double voxel = swarf_stock_voxel(stock);
+    struct touch sum = {0};
+    swarf_tree_next_generation(stock->tree);
+    for (size_t first = 0, done = 0; first < count && body->component_count; first += done)
+        SWARF_TRY(cut_batch(stock, body, tracks + first, count - first, NULL, 0, 1, &sum, 1, 0, &done));
+    *removed = sum.removed * voxel * voxel * voxel;
+    return SWARF_OK;
+}
+
 swarf_status swarf_cut_touch(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
                              double enough, double *depth, double point[3])
 {
@@ -454,8 +497,8 @@ swarf_status swarf_cut_touch(swarf_stock *stock, const swarf_body *body, const s
         status = swarf_track_append(&list, &paths[i], layout->origin, layout->voxel);
     for (size_t first = 0, done = 0;
          first < list.count && status == SWARF_OK && body->component_count && !(deepest.depth > enough); first += done)
-        status =
-            cut_batch(stock, body, list.tracks + first, list.count - first, NULL, 0, 1, &deepest, (float)enough, &done);
+        status = cut_batch(stock, body, list.tracks + first, list.count - first, NULL, 0, 1, &deepest, 0, (float)enough,
+                           &done);
     free(list.tracks);
     if (status != SWARF_OK) return status;
     *depth = deepest.depth;

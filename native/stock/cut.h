@@ -5,11 +5,16 @@
 
 #include "stock/stock.h"
 #include "sweep/body.h"
+#include "sweep/track.h"
 
 /** Cut all paths at once with a body prepared at the stock's voxel size; the stock has been entered for writing.
  *  Progress runs from `from` to `to`. */
 swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
                             const swarf_progress *progress, double from, double to);
+
+/** Cut tracks in the stock's voxels at once; *removed: mm3 that went, the difference of swarf_measure_volume(). */
+swarf_status swarf_cut_measured(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,
+                                double *removed);
 
 /** How deep (mm, 0: not at all) bodies along these paths go into the stock, which stays as it is, and a voxel where.
  *  Good to a hundredth of a voxel where faces meet, to a tenth elsewhere; no more than three voxels are told.

@@ -231,8 +231,9 @@ float swarf_stock_value(const swarf_stock *stock, const int32_t ijk[3])
     return inside ? -layout->background : layout->background;
 }
 
-static float sample(const swarf_stock *stock, const swarf_tree_layout *layout, const double point[3])
+float swarf_measure_sample(const swarf_stock *stock, const double point[3])
 {
+    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     int32_t corner[3];
     float part[3];
     for (int k = 0; k < 3; k++) {
@@ -263,10 +264,9 @@ struct sampling {
 static swarf_status sample_chunk(void *context, size_t index)
 {
     const struct sampling *work = context;
-    const swarf_tree_layout *layout = swarf_tree_get_layout(work->stock->tree);
     const size_t first = index * SAMPLES_AT_ONCE;
     const size_t last = first + SAMPLES_AT_ONCE < work->count ? first + SAMPLES_AT_ONCE : work->count;
-    for (size_t i = first; i < last; i++) work->out[i] = sample(work->stock, layout, work->points + 3 * i);
+    for (size_t i = first; i < last; i++) work->out[i] = swarf_measure_sample(work->stock, work->points + 3 * i);
     return SWARF_OK;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Playing a program on a stock: moves in order, in batches that share a tool and an operation. */
+#include "stock/simulate.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/status.h"
@@ -32,6 +33,8 @@ struct player {
     swarf_body **bodies; /* per tool, made when first used */
     swarf_simulation *result;
     const swarf_progress *progress;
+    const swarf_watch *watch; /* or NULL */
+    int stopped;
     size_t first, count, batch;
     swarf_path *paths;
     size_t path_room;
@@ -177,9 +180,11 @@ static swarf_status play_batch(struct player *player, size_t first, size_t end, 
     const double to = (double)(end - player->first) / (double)player->count;
     const swarf_body *body = NULL;
     if (used) SWARF_TRY(find_body(player, first_moving, section, &body));
+    if (player->watch) SWARF_TRY(player->watch->play(player->watch->context, first, end, from, to, &player->stopped));
     if (!body) return swarf_progress_report(player->progress, to);
     size_t *cuts = section->operation >= 0 ? &player->cuts[section->operation] : NULL;
     if (cuts && *cuts == 0) *cuts = first_moving + 1;
+    if (player->watch) return swarf_progress_report(player->progress, to);
     return swarf_cut_body(player->stock, body, player->paths, used, player->progress, from, to);
 }
 
@@ -216,7 +221,7 @@ static swarf_status play(struct player *player)
     SWARF_TRY(swarf_measure_volume(player->stock, &result->initial));
     double volume = result->initial;
     const size_t last = player->first + player->count;
-    for (size_t i = player->first; i < last;) {
+    for (size_t i = player->first; i < last && !player->stopped;) {
         const swarf_section *section = &sections[swarf_move_get_section(&moves[i])];
         size_t end = i + 1;
         while (end < last && end - i < player->batch) {
@@ -225,8 +230,8 @@ static swarf_status play(struct player *player)
             end++;
         }
         SWARF_TRY(play_batch(player, i, end, section));
-        const int new_operation =
-            end == last || sections[swarf_move_get_section(&moves[end])].operation != section->operation;
+        const int new_operation = end == last || player->stopped ||
+                                  sections[swarf_move_get_section(&moves[end])].operation != section->operation;
         double removed = 0;
         if (new_operation || result->per_move) SWARF_TRY(account(player, &volume, &removed));
         if (section->operation >= 0 && (size_t)section->operation < result->operation_count)
@@ -236,30 +241,26 @@ static swarf_status play(struct player *player)
     }
     result->final = volume;
     /* of a part of a program nobody can say what the rest does */
-    return player->count == swarf_program_move_count(player->program) ? report_idle(player) : SWARF_OK;
+    const int whole = player->count == swarf_program_move_count(player->program) && !player->stopped;
+    return whole ? report_idle(player) : SWARF_OK;
 }
 
-swarf_status swarf_stock_simulate(swarf_stock *stock, const swarf_program *program, size_t first, size_t count,
-                                  const swarf_tool *tools, size_t tool_count, const swarf_simulation_options *options,
-                                  const swarf_progress *progress, swarf_simulation **out)
+swarf_status swarf_simulate_watched(swarf_stock *stock, const swarf_program *program, size_t first, size_t count,
+                                    const swarf_tool *tools, size_t tool_count, const swarf_simulation_options *options,
+                                    const swarf_progress *progress, const swarf_watch *watch, swarf_simulation **out)
 {
-    SWARF_REQUIRE(program && out && (tools || tool_count == 0), "simulation: program, tools or output missing");
-    SWARF_REQUIRE(!options || options->size == sizeof *options, "simulation: options of another version");
-    const size_t total = swarf_program_move_count(program);
-    SWARF_REQUIRE(first <= total && count <= total - first, "simulation: moves %zu .. %zu of %zu", first, first + count,
-                  total);
     const int per_move = options && options->removed_per_move;
     struct player player = {.stock = stock,
                             .program = program,
                             .tools = tools,
                             .tool_count = tool_count,
                             .progress = progress,
+                            .watch = watch,
                             .first = first,
                             .count = count,
                             .batch = MOST_AT_ONCE};
     if (options && options->batch && options->batch < player.batch) player.batch = options->batch;
     if (per_move) player.batch = 1;
-    SWARF_TRY(swarf_stock_enter_write(stock));
     swarf_simulation *result = calloc(1, sizeof *result);
     player.result = result;
     player.bodies = calloc(tool_count ? tool_count : 1, sizeof *player.bodies);
@@ -278,11 +279,26 @@ swarf_status swarf_stock_simulate(swarf_stock *stock, const swarf_program *progr
     free(player.bodies);
     free(player.cuts);
     free(player.paths);
-    swarf_stock_leave(stock);
     if (status != SWARF_OK) {
         swarf_simulation_destroy(result);
         return status;
     }
     *out = result;
     return SWARF_OK;
+}
+
+swarf_status swarf_stock_simulate(swarf_stock *stock, const swarf_program *program, size_t first, size_t count,
+                                  const swarf_tool *tools, size_t tool_count, const swarf_simulation_options *options,
+                                  const swarf_progress *progress, swarf_simulation **out)
+{
+    SWARF_REQUIRE(program && out && (tools || tool_count == 0), "simulation: program, tools or output missing");
+    SWARF_REQUIRE(!options || options->size == sizeof *options, "simulation: options of another version");
+    const size_t total = swarf_program_move_count(program);
+    SWARF_REQUIRE(first <= total && count <= total - first, "simulation: moves %zu .. %zu of %zu", first, first + count,
+                  total);
+    SWARF_TRY(swarf_stock_enter_write(stock));
+    const swarf_status status =
+        swarf_simulate_watched(stock, program, first, count, tools, tool_count, options, progress, NULL, out);
+    swarf_stock_leave(stock);
+    return status;
 }

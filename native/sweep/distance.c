@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Distances at single points, through the kernels that cut. */
+#include "sweep/distance.h"
 #include "base/status.h"
 #include "cutter/cutter.h"
 #include "swarf/sweep.h"
@@ -8,27 +9,34 @@
 #include <math.h>
 #include <stdlib.h>
 
+swarf_status swarf_distance_at(const swarf_body *body, const swarf_track *tracks, size_t count, const double point[3],
+                               swarf_column *column, float *out)
+{
+    const swarf_kernel *kernel = swarf_kernel_current();
+    SWARF_TRY(swarf_column_fill(column, point, tracks, NULL, count));
+    /* as in a leaf, tracks beyond the band are left out and one that covers the point settles it */
+    const swarf_block here = {0, 0, 0, 0, 0};
+    size_t near = 0;
+    *out = SWARF_HALF_WIDTH;
+    if (kernel->cull(body, column, column->list[LIST_ALL], column->count, &here, 1, &column->list[LIST_CUBE], &near))
+        *out = -SWARF_HALF_WIDTH;
+    else if (near)
+        *out = kernel->distance(body, column, column->list[LIST_CUBE], near);
+    return SWARF_OK;
+}
+
 static swarf_status measure(const swarf_body *body, const swarf_track_list *list, swarf_column *column, double voxel,
                             const double *points, size_t count, float *out)
 {
-    const swarf_kernel *kernel = swarf_kernel_current();
     for (size_t i = 0; i < count; i++) {
-        double middle[3];
+        double point[3];
+        float found;
         for (int k = 0; k < 3; k++) {
             SWARF_REQUIRE(isfinite(points[3 * i + (size_t)k]), "sweep: coordinate %c of point %zu is not finite",
                           "xyz"[k], i);
-            middle[k] = points[3 * i + (size_t)k] / voxel;
+            point[k] = points[3 * i + (size_t)k] / voxel;
         }
-        SWARF_TRY(swarf_column_fill(column, middle, list->tracks, NULL, list->count));
-        /* as in a leaf, tracks beyond the band are left out and one that covers the point settles it */
-        const swarf_block here = {0, 0, 0, 0, 0};
-        size_t near = 0;
-        float found = SWARF_HALF_WIDTH;
-        if (kernel->cull(body, column, column->list[LIST_ALL], column->count, &here, 1, &column->list[LIST_CUBE],
-                         &near))
-            found = -SWARF_HALF_WIDTH;
-        else if (near)
-            found = kernel->distance(body, column, column->list[LIST_CUBE], near);
+        SWARF_TRY(swarf_distance_at(body, list->tracks, list->count, point, column, &found));
         out[i] = found * (float)voxel;
     }
     return SWARF_OK;

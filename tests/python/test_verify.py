@@ -113,13 +113,13 @@ def test_checks():
     job = faced(1.0)
     job.program.add_line((20, 15, -3), kind="rapid", line=77)
     stock = swarf.Stock.box(LO, HI, 0.5)
-    (found,) = stock.check(job.program, job.tools)
+    (found,) = stock.check(job.program, job.tools).findings
     assert (found.severity, found.kind, found.part, found.line) == ("error", "rapid", "flutes", 77)
     assert 0 < found.t < 1 and math.isclose(found.tip[2], -1, abs_tol=0.06) and "rapid" in found.text
     clamp = swarf.Solid(box((30.0, 10.0, -1.0), (40.0, 20.0, 9.0)))
     hits = swarf.Stock.box(LO, HI, 0.5).check(job.program, job.tools, fixtures=[clamp], travel=((-4, -50, -50), (90, 90, 90)))
-    assert {"fixture", "travel", "rapid"} == {found.kind for found in hits}
-    assert len(swarf.Stock.box(LO, HI, 0.5).check(job.program, job.tools, fixtures=[clamp], stop=True)) == 1
+    assert {"fixture", "travel", "rapid"} == {found.kind for found in hits.findings}
+    assert len(swarf.Stock.box(LO, HI, 0.5).check(job.program, job.tools, fixtures=[clamp], stop=True).findings) == 1
     with pytest.raises(TypeError, match="item 0"):
         stock.check(job.program, job.tools, fixtures=[DESIGN])
     with pytest.raises(ValueError, match="clearance"):

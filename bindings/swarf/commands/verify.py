@@ -7,7 +7,7 @@ import os
 import time
 from typing import Any
 
-from .. import document, inputs, report
+from .. import accept, document, inputs, loads, report
 from ..console import DONE, FINDINGS, check_outputs, one_line
 from ..progress import Bar
 from ..verify import DESIGN_SUFFIXES, Verdict, read_design, verify
@@ -36,15 +36,31 @@ def add(subparsers: Any) -> None:
                          help="a mesh that nothing may touch: clamps, the vice (repeatable)")
     command.add_argument("--clearance", metavar="MM", type=float, default=0.0,
                          help="warn where the holder comes nearer to the stock")
+    command.add_argument("--limit", metavar="[N:]KIND=VALUE", action="append", default=[], type=_limit,
+                         help="warn where a load exceeds this, of tool N or of all: "
+                              f"{', '.join(f'{kind} ({entry[1]})' for kind, entry in loads.KINDS.items())} (repeatable)")
+    command.add_argument("--limits", metavar="FILE.json", help="limits from a file, see the README")
+    command.add_argument("--material", metavar="NAME", help="the stock's, among those in the file of limits")
+    command.add_argument("--no-loads", action="store_true", help="do not measure loads: faster")
+    command.add_argument("--accept", metavar="FILE.json", help="findings that are accepted, each with its reason")
     command.add_argument("--report", metavar="FILE", action="append", default=[],
                          help="write a report: .html .json (repeatable)")
+
+
+def _limit(word: str) -> loads.Limits:
+    try:
+        return loads.parse(word)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def finding_line(finding: Verdict) -> str:
     """A finding as one line: severity, line of the program, text, place."""
     where = f" line {finding.line}:" if finding.line else ""
     place = "" if finding.place is None else " at ({:.2f}, {:.2f}, {:.2f})".format(*finding.place)
-    return f"{finding.severity}:{where} {one_line(finding.text)}{place}"
+    severity = finding.severity if finding.accepted is None else f"accepted {finding.severity}"
+    reason = "" if finding.accepted is None else f" (accepted: {one_line(finding.accepted)})"
+    return f"{severity}:{where} {one_line(finding.text)}{place}{reason}"
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -54,6 +70,11 @@ def run(arguments: argparse.Namespace) -> int:
         if os.path.splitext(path)[1].lower() not in REPORT_SUFFIXES:
             raise ValueError(f"{path}: unknown suffix; a report is {' or '.join(REPORT_SUFFIXES)}")
     check_outputs(arguments.report, arguments.input)
+    if arguments.material is not None and arguments.limits is None:
+        raise ValueError("--material chooses among the materials of a file of limits; give --limits FILE.json")
+    limits = loads.merge({} if arguments.limits is None else loads.read(arguments.limits, arguments.material),
+                         *arguments.limit)
+    accepted = [] if arguments.accept is None else accept.read(arguments.accept)
     fixtures = [read_design(path) for path in arguments.fixture]
     design = None if arguments.design is None else read_design(arguments.design)
 
@@ -66,7 +87,8 @@ def run(arguments: argparse.Namespace) -> int:
         done = verify(
             job, design, tolerance=arguments.tolerance, excess=arguments.excess, gouge=arguments.gouge,
             allowance=arguments.allowance, complete=arguments.complete, voxel=arguments.voxel,
-            resolution=arguments.resolution, fixtures=fixtures, clearance=arguments.clearance, progress=bar)
+            resolution=arguments.resolution, fixtures=fixtures, clearance=arguments.clearance,
+            loads=not arguments.no_loads, limits=limits, accept=accepted, progress=bar)
         made = report.make_verification(done, arguments.input, seconds_read)
         for path in arguments.report:
             if os.path.splitext(path)[1].lower() == ".html":
@@ -74,7 +96,8 @@ def run(arguments: argparse.Namespace) -> int:
             else:
                 report.write(made, path)
     inputs.print_notes(job)
-    inputs.print_findings([finding_line(finding) for finding in done.findings])
+    inputs.print_findings([finding_line(finding) for finding in
+                           sorted(done.findings, key=lambda finding: finding.accepted is not None)])
     print(f"{arguments.input}: {'passed' if done.passed else 'FAILED'}, tolerance +{done.tolerance[0]:g} "
           f"-{done.tolerance[1]:g} mm, voxel {done.result.stock.voxel:g} mm")
     return DONE if done.passed else FINDINGS

@@ -82,7 +82,8 @@ def to_job(data):
         stock["mesh"] = to_mesh(stock["mesh"])
     return load().Job(name=data.name, program=to_program(data.moves), tools=to_cutters(data.tools),
                       tool_names={number: name for number, (name, _) in data.tools.items()}, stock=stock,
-                      design=to_mesh(data.design) if data.design else None, notes=list(data.notes))
+                      design=to_mesh(data.design) if data.design else None, notes=list(data.notes),
+                     teeth=dict(data.teeth))
 
 
 @dataclass

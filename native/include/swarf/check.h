@@ -3,6 +3,7 @@
 #ifndef SWARF_CHECK_H
 #define SWARF_CHECK_H
 
+#include "load.h"
 #include "solid.h"
 #include "stock.h"
 
@@ -38,7 +39,7 @@ typedef struct swarf_check_options {
     const int32_t *no_plunge;  /**< numbers of tools that cannot plunge */
     size_t no_plunge_count;
     int32_t stop_on_first; /**< end with the first error */
-    int32_t reserved;
+    int32_t loads;         /**< measure the load of each move; costs several times the cutting */
 } swarf_check_options;
 
 /** Nothing but the stock, 0.05 mm for the design, no clearance, travel without end. */
@@ -70,6 +71,11 @@ SWARF_API swarf_status swarf_stock_check(swarf_stock *stock, const swarf_program
                                          const swarf_tool *tools, size_t tool_count, const swarf_check_options *options,
                                          const swarf_progress *progress, swarf_check **out);
 SWARF_API void swarf_check_destroy(swarf_check *check);
+/** What swarf_stock_simulate() tells of the same moves: removed volumes, moves that could not be simulated. Owned by
+ * the check. */
+SWARF_API const swarf_simulation *swarf_check_simulation(const swarf_check *check);
+/** Loads of the moves played; NULL unless asked for. Owned by the check. */
+SWARF_API const swarf_loads *swarf_check_loads(const swarf_check *check);
 /** In the order of the moves. */
 SWARF_API const swarf_check_finding *swarf_check_findings(const swarf_check *check, size_t *count);
 /** "rapid", "holder" ... */

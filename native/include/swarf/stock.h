@@ -94,7 +94,7 @@ typedef struct swarf_finding {
 /** A tool table entry. */
 typedef struct swarf_tool {
     int32_t number;
-    int32_t reserved;
+    int32_t teeth; /**< cutting edges around the tool, for loads; 0: not known */
     const swarf_cutter *cutter;
 } swarf_tool;
 

@@ -123,9 +123,11 @@ def read_job(job):
     table = program.build(operations)
     if not len(table):
         raise JobError("the operations of the job '%s' hold no moves: recompute it" % job.Label)
+    controllers = list(controllers)
     described = _tools(controllers)
     for number, (name, parts) in described.items():
         if table.feeds_with(number) and not any(kind == cutter.FLUTES for kind, _ in parts):
             raise JobError("the tool '%s' (T%d) has no flutes and cannot cut" % (name, number))
+    teeth = {int(controller.ToolNumber): tools.teeth(controller.Tool) for controller in controllers}
     return JobData(job.Label, table, described, shapes.stock_of(job), shapes.design_of(job), notes,
-                   operations)
+                   operations, {number: count for number, count in teeth.items() if count})

@@ -98,3 +98,9 @@ def describe(controller):
         raise JobError("the tool of the tool controller '%s' (T%d): %s"
                        % (controller.Label, controller.ToolNumber, error)) from error
     return tool.Label, parts
+
+
+def teeth(tool):
+    """Number of cutting edges around a tool, 0 where it does not tell: its property Flutes."""
+    count = getattr(tool, "Flutes", 0)
+    return count if isinstance(count, int) and not isinstance(count, bool) and 0 < count <= 1000 else 0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The folder through which FreeCAD's Python hands a job to another one.
 
-    job.json      version, name, operations, sections, tools, stock, notes; written last
+    job.json      version, name, operations, sections, tools, stock, notes, teeth; written last
     moves.bin     the rows of the MoveTable, little-endian doubles
     stock.points, stock.triangles, design.points, design.triangles
                   little-endian doubles (x y z) and 32-bit indices, where there is such a mesh
@@ -17,7 +17,7 @@ from .errors import JobError
 from .job import JobData
 from .moves import MoveTable
 
-VERSION = 1
+VERSION = 2
 
 
 def _write(folder, name, data):
@@ -62,6 +62,7 @@ def write(folder, job):
         "version": VERSION, "name": job.name, "operations": job.moves.operations, "sections": job.moves.sections,
         "tools": [{"number": number, "name": name, "parts": parts} for number, (name, parts) in job.tools.items()],
         "stock": stock, "design": job.design is not None, "notes": job.notes,
+        "teeth": sorted(job.teeth.items()),
     }
     _write(folder, "job.json", json.dumps(document).encode())
 
@@ -88,4 +89,4 @@ def read(folder):
              for tool in document["tools"]}
     moves = MoveTable.from_bytes(_read(folder, "moves.bin"), document["sections"], document["operations"])
     design = _read_mesh(folder, "design") if document["design"] else None
-    return JobData(document["name"], moves, tools, stock, design, document["notes"])
+    return JobData(document["name"], moves, tools, stock, design, document["notes"], teeth=dict(document["teeth"]))

@@ -13,7 +13,7 @@ class JobData:
     "kind" "box" and "lo", "hi", or "kind" "mesh" and "mesh". Meshes, also design (None: no model), are pairs
     (points, triangles): array('d') of x y z and array('I') of three indices each.
     notes: what the reader left out or assumed, one sentence each. operations: program.Operation of each name in
-    moves.operations; empty where the job came through a file.
+    moves.operations; empty where the job came through a file. teeth: cutting edges around each tool, where known.
     """
 
     name: str
@@ -23,3 +23,4 @@ class JobData:
     design: Any = None
     notes: list = field(default_factory=list)
     operations: list = field(default_factory=list)
+    teeth: dict = field(default_factory=dict)
