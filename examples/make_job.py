@@ -84,6 +84,14 @@ def plane_at(shape, height):
     return max(faces)[1]
 
 
+def open_edges(shape, name):
+    """The edges of a face that lie on the part's outside, as features that an operation extends the face over."""
+    numbers = ["%d" % number for number, edge in enumerate(shape.Edges, 1)
+               if any(edge.isSame(other) for other in shape.getElement(name).Edges)
+               and (edge.BoundBox.XMin > LENGTH - 1e-6 or edge.BoundBox.YMin > WIDTH - 1e-6)]
+    return ["%s:Wire(%s)" % (name, ",".join(numbers))]
+
+
 def hole_at(shape, x, y):
     """Names of the faces of the hole at a place."""
     return ["Face%d" % number for number, face in enumerate(shape.Faces, 1)
@@ -170,9 +178,13 @@ def make():
     trough = ["Face%d" % number for number, item in enumerate(shape.Faces, 1)
               if isinstance(item.Surface, Part.Cylinder) and item.Surface.Radius > 15]
     add_operation(job, "MillFace", "Facing", mill, face(HEIGHT), BoundaryShape="Stock", FinalDepth=HEIGHT, StepDown=1.0)
-    add_operation(job, "Pocket", "Pocket", mill, face(HEIGHT - POCKET_DEPTH), StepDown=3.0, StepOver=50,
-                  OffsetPattern="Offset", ClearingPattern="Offset")
-    add_operation(job, "Adaptive", "Step", mill, face(HEIGHT - STEP_DEPTH), StepDown=5.0, StepOver=25, HelixAngle=5.0)
+    add_operation(job, "Adaptive", "Pocket", mill, face(HEIGHT - POCKET_DEPTH), StepDown=5.0, StepOver=25,
+                  HelixAngle=5.0)
+    step = plane_at(shape, HEIGHT - STEP_DEPTH)
+    # beyond the open sides, or a spike is left of the stock's corner
+    add_operation(job, "Pocket", "Step", mill, [(model, [step])], StepDown=3.0, StepOver=50, OffsetPattern="Offset",
+                  ClearingPattern="Offset", ExtensionLengthDefault=6.0, ExtensionCorners=True,
+                  ExtensionFeature=[(model, open_edges(shape, step))])
     add_operation(job, "Profile", "Outline", mill, face(0), processHoles=False, processPerimeter=True, FinalDepth=0.0,
                   StepDown=3.0)
     add_operation(job, "Drilling", "Drilling", drill, holes(2), FinalDepth=-2.0)
