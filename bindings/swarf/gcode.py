@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 import math
 import os
-import struct
 from typing import Any, Iterator, Optional, Union
 
 from ._native import Program
+from .records import ARC, AXES, MOVE, SECTION, section_and_kind
 
 DIALECTS = ("linuxcnc", "grbl", "mach3", "fanuc")
 
@@ -103,16 +103,16 @@ def moves_text(program: Program) -> Iterator[str]:
     Lengths in mm, ends and centres (I J K) absolute in the coordinates of the stock, A the angle in degrees
     (positive: counter-clockwise, more than 360: several turns), F in mm/min. A B C U V W follow where they are not 0.
     """
-    sections = list(struct.iter_unpack("=iiiidii", bytes(program.sections)))
+    sections = list(SECTION.iter_unpack(bytes(program.sections)))
     arcs = bytes(program.arcs)
-    axes = list(struct.iter_unpack("=Q6d", bytes(program.axes)))
+    axes = list(AXES.iter_unpack(bytes(program.axes)))
     row, current, section_now = 0, (0.0,) * 6, None
-    for index, move in enumerate(struct.iter_unpack("=dddfIiI", program.moves)):
-        *end, feed, line, arc, section_kind = move
-        kind = section_kind & 7
-        if section_kind >> 3 != section_now:
+    for index, move in enumerate(MOVE.iter_unpack(program.moves)):
+        *end, feed, line, arc, packed = move
+        section, kind = section_and_kind(packed)
+        if section != section_now:
             old = None if section_now is None else sections[section_now]
-            section_now = section_kind >> 3
+            section_now = section
             yield from _section_lines(program, old, sections[section_now])
         if row < len(axes) and axes[row][0] <= index:
             current = axes[row][1:]
@@ -125,7 +125,7 @@ def moves_text(program: Program) -> Iterator[str]:
             continue
         words = [str(line), "arc" if arc >= 0 else MOVE_KINDS[kind]]
         if arc >= 0:
-            *centre, angle, plane, _ = struct.unpack_from("=dddd2i", arcs, 40 * arc)
+            *centre, angle, plane, _ = ARC.unpack_from(arcs, ARC.size * arc)
             words += [PLANES[plane], _point("XYZ", tuple(end)), _point("IJK", tuple(centre)),
                       "A" + _number(math.degrees(angle))]
         else:

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import json
 import math
-import struct
 from typing import Any, Optional
 
 from ._native import Program
+from .records import MOVE, SECTION, section_and_kind
 
 KEYS = ("rapid_mm_min", "feed_mm_min", "acceleration_mm_s2", "junction_mm", "rotary_deg_min", "tool_change_s")
 
@@ -43,10 +43,10 @@ def read_machine(path: str) -> dict[str, Any]:
 def summary(program: Program, limits: Optional[dict[str, Any]] = None) -> dict[str, Any]:
     """Seconds in all, by tool number and by operation (in the program's order). ValueError for limits that cannot be."""
     times = program.times(**(limits or {}))
-    sections = [row[:2] for row in struct.iter_unpack("=iiiidii", bytes(program.sections))]
+    sections = [row[:2] for row in SECTION.iter_unpack(bytes(program.sections))]
     by_section = [0.0] * len(sections)
-    for seconds, row in zip(times, struct.iter_unpack("=36xI", program.moves)):
-        by_section[row[0] >> 3] += seconds
+    for seconds, row in zip(times, MOVE.iter_unpack(program.moves)):
+        by_section[section_and_kind(row[-1])[0]] += seconds
     by_tool: dict[int, float] = {}
     by_operation = [0.0] * len(program.operations)
     for (tool, operation), seconds in zip(sections, by_section):
