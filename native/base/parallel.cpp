@@ -82,8 +82,10 @@ struct run {
         const auto now = clock_type::now();
         if (now - reported < std::chrono::milliseconds(report_interval_ms.load(std::memory_order_relaxed))) return;
         reported = now;
-        const swarf_status answer = swarf_progress_report(progress, from + (to - from) * static_cast<double>(finished) /
-                                                                               static_cast<double>(count));
+        /* rounded, from + (to - from) may be more than `to`, from where the next part goes on */
+        const double share = static_cast<double>(finished) / static_cast<double>(count);
+        const swarf_status answer =
+            swarf_progress_report(progress, finished == count ? to : from + (to - from) * share);
         if (answer != SWARF_OK) stop(answer);
     }
 };

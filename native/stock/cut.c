@@ -12,6 +12,7 @@
 #include "base/status.h"
 #include "stock/block.h"
 #include "stock/leaf.h"
+#include "stock/undo.h"
 #include "sweep/kernel.h"
 
 #include <math.h>
@@ -44,6 +45,7 @@ struct cut_work {
     int measured;          /* 1: it is cut all the same, and the touches tell how much was removed */
     float enough;          /* depth from which on it need not be looked for any more */
     int *found;            /* 1 once that deep a place is known; only by atomic operations */
+    swarf_undo *undo;      /* keeps what slots held before; NULL: nothing does */
 };
 
 /* Place of a leaf, by its coordinates in leaves. */
@@ -93,13 +95,24 @@ static double slot_material(const struct cut_work *work, const struct place *pla
     return work->kernel->occupancy(values ? values : face, scale);
 }
 
-static void remove_cube(const struct cut_work *work, struct touch *touch, int32_t x, int32_t y, int32_t z, int edge)
+/* Keep what a slot held, by its coordinates in leaves: `before` is NULL where it was a tile, `after` where it becomes
+ * one. */
+static swarf_status keep_slot(const struct cut_work *work, int32_t x, int32_t y, struct place place,
+                              const float *before, const float *after)
+{
+    if (!work->undo) return SWARF_OK;
+    const int32_t column = x / COLUMN_LEAVES * work->columns_y + y / COLUMN_LEAVES;
+    return swarf_undo_keep(work->undo, column, place.node, place.slot, before, after, work->layout->background);
+}
+
+static swarf_status remove_cube(const struct cut_work *work, struct touch *touch, int32_t x, int32_t y, int32_t z,
+                                int edge)
 {
     const int32_t middle = edge * SWARF_LEAF_DIM / 2;
     if (touch && !work->measured) {
         see_touch(touch, work->layout->background, x * SWARF_LEAF_DIM + middle, y * SWARF_LEAF_DIM + middle,
                   z * SWARF_LEAF_DIM + middle);
-        return;
+        return SWARF_OK;
     }
     for (int i = 0; i < edge * edge * edge; i++) {
         const int32_t at[3] = {x + i / (edge * edge), y + i / edge % edge, z + i % edge};
@@ -107,8 +120,10 @@ static void remove_cube(const struct cut_work *work, struct touch *touch, int32_
         const uint64_t word = work->layout->occupied[place.node * SWARF_NODE_WORDS + (place.slot >> 6)];
         if (!(word >> (place.slot & 63) & 1)) continue;
         if (touch) touch->removed += slot_material(work, &place, at[0], at[1], at[2]);
+        SWARF_TRY(keep_slot(work, x, y, place, swarf_tree_leaf(work->stock->tree, place.node, place.slot), NULL));
         swarf_tree_tile(work->stock->tree, place.node, place.slot, 0);
     }
+    return SWARF_OK;
 }
 
 /* Beside edges distances run short, and the more so the farther away: voxels farther from the surface than the first
@@ -159,6 +174,7 @@ static swarf_status cut_leaf(const struct cut_work *work, struct touch *touch, c
         if (stored) memcpy(fresh, stored, sizeof fresh);
         cut.values = fresh;
     }
+    if (work->undo && stored) memcpy(before, stored, sizeof before);
     const int changed = work->kernel->cut(work->body, column, list, count, &cut);
     if (touch && work->measured)
         touch->removed -= cut.solid && !changed ? SWARF_LEAF_SIZE : work->kernel->occupancy(cut.values, scale);
@@ -167,7 +183,15 @@ static swarf_status cut_leaf(const struct cut_work *work, struct touch *touch, c
         touch_leaf(work, touch, cut.solid ? NULL : before, fresh, corner);
         return SWARF_OK;
     }
-    if (cut.least >= SWARF_LEAF_DROP * cut.voxel) {
+    const int gone = cut.least >= SWARF_LEAF_DROP * cut.voxel;
+    if (stored || gone || cut.most > -cut.background) {
+        const swarf_status status = keep_slot(work, x, y, place, stored ? before : NULL, gone ? NULL : cut.values);
+        if (status != SWARF_OK) {
+            if (stored) memcpy(stored, before, sizeof before);
+            return status;
+        }
+    }
+    if (gone) {
         swarf_tree_tile(work->stock->tree, place.node, place.slot, 0);
     } else if (stored) {
         swarf_tree_leaf_mask(work->stock->tree, place.node, place.slot, cut.mask);
@@ -204,7 +228,7 @@ static swarf_status cut_cube(const struct cut_work *work, struct touch *touch, c
     const unsigned covered = work->kernel->cull(work->body, column, list, count, blocks, used, kept, left);
     for (size_t i = 0; i < used; i++) {
         if (covered >> i & 1)
-            remove_cube(work, touch, places[i][0], places[i][1], places[i][2], next);
+            SWARF_TRY(remove_cube(work, touch, places[i][0], places[i][1], places[i][2], next));
         else if (left[i])
             SWARF_TRY(cut_cube(work, touch, column, kept[i], left[i], places[i], next));
     }
@@ -234,7 +258,7 @@ static swarf_status cut_column_with(const struct cut_work *work, swarf_column *c
         int32_t *kept = column->list[LIST_CUBE];
         size_t left = 0;
         if (work->kernel->cull(work->body, column, column->list[LIST_ALL], count, &block, 1, &kept, &left))
-            remove_cube(work, touch, at[0], at[1], at[2], COLUMN_LEAVES);
+            SWARF_TRY(remove_cube(work, touch, at[0], at[1], at[2], COLUMN_LEAVES));
         else if (left)
             SWARF_TRY(cut_cube(work, touch, column, kept, left, at, COLUMN_LEAVES));
     }
@@ -396,18 +420,19 @@ static void keep_scratch(struct scratch *scratch)
 }
 
 /* Cut the first tracks of a list as one batch, or with `deepest` only see how deep they go (`measured`: cut them and
- * see how much goes); *done: how many. */
+ * see how much goes); *done: how many. With `undo` what is changed is kept, in a layer of its own. */
 static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,
-                              const swarf_progress *progress, double from, double to, struct touch *deepest,
-                              int measured, float enough, size_t *done)
+                              swarf_undo *undo, const swarf_progress *progress, double from, double to,
+                              struct touch *deepest, int measured, float enough, size_t *done)
 {
     const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     struct bins bins = {0};
     struct scratch *scratch = take_scratch(swarf_threads());
     swarf_status status = scratch ? fill_bins(layout, body, tracks, count, &bins)
                                   : swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
+    if (status == SWARF_OK && undo) status = swarf_undo_open(undo, layout, bins.columns, bins.column_count);
     if (status == SWARF_OK) {
-        const double share = (double)bins.tracks / (double)count;
+        const double until = bins.tracks == count ? to : from + (to - from) * (double)bins.tracks / (double)count;
         struct cut_work work = {stock,
                                 layout,
                                 swarf_kernel_current(),
@@ -422,20 +447,21 @@ static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const 
                                 NULL,
                                 measured,
                                 enough,
-                                NULL};
+                                NULL,
+                                undo};
         int found = 0;
         if (deepest && !measured) work.found = &found;
         if (deepest && !(work.touches = calloc(bins.column_count + 1, sizeof *work.touches)))
             status = swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
         if (status == SWARF_OK)
-            status =
-                swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, from + (to - from) * share);
+            status = swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, until);
         for (size_t i = 0; deepest && status == SWARF_OK && i < bins.column_count; i++)
             if (measured)
                 deepest->removed += work.touches[i].removed;
             else if (work.touches[i].depth > deepest->depth)
                 *deepest = work.touches[i];
         free(work.touches);
+        if (undo) swarf_undo_close(undo);
     }
     keep_scratch(scratch);
     free(bins.starts);
@@ -445,22 +471,23 @@ static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const 
     return status;
 }
 
+/* What is kept can be put back: then a cancel need not wait for the end of a batch. */
 static swarf_status cut_tracks(swarf_stock *stock, const swarf_body *body, const swarf_track_list *list,
-                               const swarf_progress *progress, double from, double to)
+                               swarf_undo *undo, const swarf_progress *progress, double from, double to)
 {
     struct deferred deferred = {progress, 0};
     const swarf_progress patient = {report_deferred, &deferred};
     for (size_t first = 0, done = 0; first < list->count; first += done) {
         const double at = from + (to - from) * (double)first / (double)list->count;
-        SWARF_TRY(cut_batch(stock, body, list->tracks + first, list->count - first,
-                            progress && progress->fn ? &patient : NULL, at, to, NULL, 0, 0, &done));
+        SWARF_TRY(cut_batch(stock, body, list->tracks + first, list->count - first, undo,
+                            progress && progress->fn && !undo ? &patient : progress, at, to, NULL, 0, 0, &done));
         if (deferred.cancelled) return swarf_fail(SWARF_ERROR_CANCELLED, "cancelled");
     }
     return swarf_progress_report(progress, to);
 }
 
-swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
-                            const swarf_progress *progress, double from, double to)
+swarf_status swarf_cut_recorded(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
+                                swarf_undo *undo, const swarf_progress *progress, double from, double to)
 {
     const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     if (body->component_count == 0) return swarf_progress_report(progress, to);
@@ -469,9 +496,15 @@ swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const sw
     for (size_t i = 0; i < count && status == SWARF_OK; i++)
         status = swarf_track_append(&list, &paths[i], layout->origin, layout->voxel);
     swarf_tree_next_generation(stock->tree);
-    if (status == SWARF_OK) status = cut_tracks(stock, body, &list, progress, from, to);
+    if (status == SWARF_OK) status = cut_tracks(stock, body, &list, undo, progress, from, to);
     free(list.tracks);
     return status;
+}
+
+swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
+                            const swarf_progress *progress, double from, double to)
+{
+    return swarf_cut_recorded(stock, body, paths, count, NULL, progress, from, to);
 }
 
 swarf_status swarf_cut_measured(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,
@@ -481,7 +514,7 @@ swarf_status swarf_cut_measured(swarf_stock *stock, const swarf_body *body, cons
     struct touch sum = {0};
     swarf_tree_next_generation(stock->tree);
     for (size_t first = 0, done = 0; first < count && body->component_count; first += done)
-        SWARF_TRY(cut_batch(stock, body, tracks + first, count - first, NULL, 0, 1, &sum, 1, 0, &done));
+        SWARF_TRY(cut_batch(stock, body, tracks + first, count - first, NULL, NULL, 0, 1, &sum, 1, 0, &done));
     *removed = sum.removed * voxel * voxel * voxel;
     return SWARF_OK;
 }
@@ -497,8 +530,8 @@ swarf_status swarf_cut_touch(swarf_stock *stock, const swarf_body *body, const s
         status = swarf_track_append(&list, &paths[i], layout->origin, layout->voxel);
     for (size_t first = 0, done = 0;
          first < list.count && status == SWARF_OK && body->component_count && !(deepest.depth > enough); first += done)
-        status = cut_batch(stock, body, list.tracks + first, list.count - first, NULL, 0, 1, &deepest, 0, (float)enough,
-                           &done);
+        status = cut_batch(stock, body, list.tracks + first, list.count - first, NULL, NULL, 0, 1, &deepest, 0,
+                           (float)enough, &done);
     free(list.tracks);
     if (status != SWARF_OK) return status;
     *depth = deepest.depth;

@@ -4,6 +4,7 @@
 #define SWARF_STOCK_CUT_H
 
 #include "stock/stock.h"
+#include "stock/undo.h"
 #include "sweep/body.h"
 #include "sweep/track.h"
 
@@ -11,6 +12,12 @@
  *  Progress runs from `from` to `to`. */
 swarf_status swarf_cut_body(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
                             const swarf_progress *progress, double from, double to);
+
+/** The same, keeping in `undo` what was there before, one layer per batch that was begun, whatever comes of it. The
+ *  faces of the block must have leaves. A cancel takes effect at once, in the middle of a batch: with it, as after any
+ *  failure, pop the new layers for a consistent stock. */
+swarf_status swarf_cut_recorded(swarf_stock *stock, const swarf_body *body, const swarf_path *paths, size_t count,
+                                swarf_undo *undo, const swarf_progress *progress, double from, double to);
 
 /** Cut tracks in the stock's voxels at once; *removed: mm3 that went, the difference of swarf_measure_volume(). */
 swarf_status swarf_cut_measured(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,

@@ -8,6 +8,7 @@
 #include "compare.h"
 #include "cutter.h"
 #include "gcode.h"
+#include "history.h"
 #include "load.h"
 #include "mesh.h"
 #include "program.h"
