@@ -157,7 +157,7 @@ class Check:
         Gui.runCommand("Swarf_Live", 0)
         self.panel = Gui.getMainWindow().findChild(QtWidgets.QDockWidget, "SwarfLive")
         assert self.panel is not None, "the command opened no panel"
-        wait_for(lambda: self.panel._session is not None, "opening")
+        wait_for(lambda: self.panel.session is not None, "opening")
         self.settle(0.0)
         screenshot("panel-start.png")
         # What lies within the picture's middle is stock, the corner is background.
@@ -182,7 +182,7 @@ class Check:
         assert differing(before, after) > 0.02, "cutting changed nothing to be seen"
         screenshot("panel-end.png")
         self.button("operation-back")
-        listing = panel._session.listing
+        listing = panel.session.listing
         self.settle(float(listing.operation_begin[3]))
         self.button("operation-back")
         self.settle(float(listing.operation_begin[2]))
@@ -206,7 +206,7 @@ class Check:
         line = panel.timeline
         drag(line, QtCore.Qt.LeftButton, (line.width() - 12, 24), (line.width() * 0.4, 24))
         self.settle()
-        share = panel.transport.time / panel._session.clock.seconds
+        share = panel.transport.time / panel.session.clock.seconds
         assert abs(share - 0.4) < 0.02, share
         screenshot("panel-slider.png")
         # at 20 times the machine's speed a second is twenty of the machine's
@@ -280,25 +280,25 @@ class Check:
         """Wide and floating, dark, in German."""
         panel = self.panel
         panel.set_speed(100.0)
-        panel.seek(panel._session.listing.operation_begin[1] + 6.5)
-        panel.findChild(type(panel._icons["path"]), "Swarf-path").setChecked(True)
+        panel.seek(panel.session.listing.operation_begin[1] + 6.5)
+        panel.tools.actions_by_name["path"].setChecked(True)
         panel.setFloating(True)
         panel.setGeometry(10, 10, 1180, 720)
         self.settle()
         assert panel.splitter.orientation() == QtCore.Qt.Horizontal
         screenshot("panel-wide.png")
-        panel.findChild(type(panel._icons["path"]), "Swarf-path").setChecked(False)
+        panel.tools.actions_by_name["path"].setChecked(False)
         application = QtWidgets.QApplication.instance()
         style = application.styleSheet()
         application.setStyleSheet("QWidget { background-color: #35393e; color: #f0f0f0 }")  # as FreeCAD's themes are
-        panel.colouring.setCurrentIndex(1)
+        panel.tools.set_colouring("operation")
         panel.seek(panel.transport.end)
         self.settle()
         screenshot("panel-dark.png")
         corner = panel.view.image().pixelColor(3, 3)
         assert corner.lightness() < 100, "the background follows a dark theme"
         application.setStyleSheet(style)
-        panel.colouring.setCurrentIndex(0)
+        panel.tools.set_colouring("material")
         panel.setFloating(False)
         Gui.setLocale("de")
         pump(0.2)
@@ -308,7 +308,7 @@ class Check:
         Gui.getMainWindow().tabifyDockWidget(panel, german)
         german.raise_()
         german.watch(job)
-        wait_for(lambda: german._session is not None, "opening a second panel")
+        wait_for(lambda: german.session is not None, "opening a second panel")
         assert german.tabs.tabText(0) == "Operationen"
         german.tabs.setCurrentWidget(german.accuracy)
         german.show()
@@ -334,35 +334,35 @@ class Check:
         for point, operation, tool in (((25, 25, -5), "RoundPocket", "T1"), ((54, 25, -3), "Wave", "T2"),
                                        ((60, 10, -1), "Facing", "T1")):
             x, y, _ = view.camera.project(point, view.aspect())
-            panel._picked = None
+            panel.picking.found = None
             click(view, (x + 1) / 2 * view.width(), (1 - y) / 2 * view.height())
-            wait_for(lambda: panel._picked is not None, "the answer to a click")
+            wait_for(lambda: panel.picking.found is not None, "the answer to a click")
             shown = panel.findChild(QtWidgets.QLabel, "SwarfPoint-operation").text()
             assert shown == operation, (shown, operation)
             assert panel.findChild(QtWidgets.QLabel, "SwarfPoint-tool").text().startswith(tool)
-            assert max(abs(a - b) for a, b in zip(panel._picked.point, point)) < 0.6, (panel._picked.point, point)
-            assert abs(panel._picked.depth_below_top + point[2]) < 0.1
+            assert max(abs(a - b) for a, b in zip(panel.picking.found.point, point)) < 0.6, (panel.picking.found.point, point)
+            assert abs(panel.picking.found.depth_below_top + point[2]) < 0.1
             assert [obj.Label for obj in Gui.Selection.getSelection()] == [operation]
-        line = panel._picked.line
+        line = panel.picking.found.line
         assert panel.program.currentIndex().row() == line
         screenshot("panel-point.png")
         panel.tabs.setCurrentWidget(panel.program)
         pump(0.2)
-        row = panel._session.listing.line_of(panel._session.listing.operation_begin[2] + 3)
+        row = panel.session.listing.line_of(panel.session.listing.operation_begin[2] + 3)
         index = panel.program.model().index(row, 0)
         panel.program.scrollTo(index)
         place = panel.program.visualRect(index).center()
         click(panel.program.viewport(), place.x(), place.y())
-        self.settle(float(panel._session.listing.moves_of(row)[1]))
+        self.settle(float(panel.session.listing.moves_of(row)[1]))
         assert panel.program.currentIndex().row() == row, "the line that was clicked stays marked"
-        assert panel._session.listing.text(row) in panel.view.caption[1]
+        assert panel.session.listing.text(row) in panel.view.caption[1]
         screenshot("panel-line.png")
         panel.tabs.setCurrentWidget(panel.operations)
         pump(0.2)
         item = panel.operations.topLevelItem(3)
         place = panel.operations.visualItemRect(item).center()
         click(panel.operations.viewport(), place.x(), place.y())
-        self.settle(float(panel._session.listing.operation_begin[3]))
+        self.settle(float(panel.session.listing.operation_begin[3]))
         item.setCheckState(0, QtCore.Qt.Unchecked)
         assert not document.getObject("Holes").ViewObject.Visibility
         item.setCheckState(0, QtCore.Qt.Checked)
@@ -377,7 +377,7 @@ class Check:
         assert "MB" in panel.accuracy.estimate.text()
         screenshot("panel-accuracy.png")
         panel.accuracy.apply.click()
-        wait_for(lambda: panel._session is not None and panel._session.voxel_mm == 0.4, "another voxel size")
+        wait_for(lambda: panel.session is not None and panel.session.voxel_mm == 0.4, "another voxel size")
         self.settle(place)
         panel.accuracy.voxel.setValue(0.0005)
         panel.accuracy.apply.click()
@@ -390,7 +390,7 @@ class Check:
         wait_for(lambda: not panel.banner.working, "cancelling")
         panel.accuracy.voxel.setValue(0.2)
         panel.accuracy.apply.click()
-        wait_for(lambda: panel._session is not None and panel._session.voxel_mm == 0.2, "going on")
+        wait_for(lambda: panel.session is not None and panel.session.voxel_mm == 0.2, "going on")
         self.settle()
 
     def outputs(self, document):
@@ -404,17 +404,17 @@ class Check:
         export.copy(panel.view.image())
         assert QtWidgets.QApplication.clipboard().image().width() == panel.view.frame.width
         path = os.path.join(OUT, "saved.png")
-        panel.save_picture(path)
+        panel.files.save_picture(path)
         wait_for(lambda: not panel.banner.working, "writing the picture")
         assert differing(QtGui.QImage(path).convertToFormat(panel.view.image().format()), panel.view.image()) < 0.01
         with tempfile.TemporaryDirectory() as folder:
-            panel.save_animation(folder, 4, (160, 120))
+            panel.files.save_animation(folder, 4, (160, 120))
             wait_for(lambda: not panel.banner.working, "writing the animation")
             frames = [QtGui.QImage(os.path.join(folder, "frame-%05d.png" % number)) for number in range(4)]
             assert differing(frames[0], frames[3]) > 0.02
         undo = document.UndoCount
-        panel.keep_result()
-        wait_for(lambda: panel.keeper.worker is None, "the result")
+        panel.files.keep_result()
+        wait_for(lambda: panel.files.keeper.worker is None, "the result")
         obj, = [item for item in document.Objects if simulation.is_simulation(item)]
         assert obj.UpToDate and document.UndoCount == undo + 1
         screenshot("panel-kept.png")
@@ -437,7 +437,7 @@ class Check:
         assert panel.transport.playing, "an edit stopped playing"
         screenshot("panel-edited.png")
         banner.action.click()
-        wait_for(lambda: panel._session is not None, "reading again")
+        wait_for(lambda: panel.session is not None, "reading again")
         self.settle()
         document.getObject("Tool").Shape = samples.end_mill(8)
         wait_for(lambda: banner.isVisible() and "changed" in banner.text.text(), "the notice of another tool")

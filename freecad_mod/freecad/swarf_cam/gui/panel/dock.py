@@ -13,33 +13,26 @@ import FreeCADGui as Gui
 from ... import native, session as sessions
 from ...app import job as jobs
 from ...app import simulation
-from ...core import clock as clocks
 from ...core import transport as model
 from ...core.engine import Engine
 from ...core.errors import JobError
-from .. import colours, icons, settings
-from ..qt import QAction, QtCore, QtWidgets
-from . import export
+from .. import colours, settings
+from ..qt import QtCore, QtWidgets
 from .accuracy import Accuracy
 from .banner import Banner
 from .bridge import Bridge
+from .files import Files
 from .inspector import Inspector
-from .keep import Keeper
 from .operations import OperationList
+from .picking import Picking
 from .program_list import ProgramList
 from .timeline import Timeline
+from .toolrow import ToolRow
 from .transport import TransportBar
 from .view import PictureView
 from .watch import JobWatch
 
 translate = FreeCAD.Qt.translate
-
-QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
-
-# Scene.render's names and what they are called here.
-COLOURINGS = (("material", QT_TRANSLATE_NOOP("Swarf", "Material")),
-              ("operation", QT_TRANSLATE_NOOP("Swarf", "By operation")), ("tool", QT_TRANSLATE_NOOP("Swarf", "By tool")),
-              ("age", QT_TRANSLATE_NOOP("Swarf", "By age")), ("feed", QT_TRANSLATE_NOOP("Swarf", "By feed")))
 
 # Milliseconds between two looks at the clock while playing.
 TICK_MS = 30
@@ -61,13 +54,14 @@ class LivePanel(QtWidgets.QDockWidget):
         super().__init__(translate("Swarf", "Milling, live"), parent)
         self.setObjectName("SwarfLive")
         self._swarf = native.load()
-        self._engine = self._session = self._watch = self._job = None
+        self.session = None
+        self._engine = self._watch = None
         self._old_engines = []
         self._tag = 0
         self._opened_at = 0.0
-        self._resume = self._picked = self._line = None
+        self._resume = self._line = None
         self.transport = None
-        self.keeper = Keeper(self)
+        self.files, self.picking = Files(self), Picking(self)
         self._build()
         self._connect()
         self._clock = QtCore.QElapsedTimer()
@@ -84,7 +78,8 @@ class LivePanel(QtWidgets.QDockWidget):
         column = QtWidgets.QVBoxLayout(body)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addWidget(self._tool_row())
+        self.tools = ToolRow(sessions.known_keywords(), hasattr(self._swarf.Scene, "set_surface"))
+        column.addWidget(self.tools)
         self.splitter = QtWidgets.QSplitter(QtCore.Qt.Vertical)
         stage = QtWidgets.QWidget()
         stage_column = QtWidgets.QVBoxLayout(stage)
@@ -116,66 +111,16 @@ class LivePanel(QtWidgets.QDockWidget):
         column.addWidget(self.splitter, 1)
         self.setWidget(body)
 
-    def _tool_row(self):
-        bar = QtWidgets.QToolBar()
-        bar.setIconSize(QtCore.QSize(18, 18))
-        self._icons = {}
-        known = sessions.known_keywords()
-
-        def add(name, text, run, checked=None, needs=None):
-            action = QAction(translate("Swarf", text), self)
-            action.setObjectName("Swarf-" + name)
-            if checked is not None:
-                action.setCheckable(True)
-                action.setChecked(checked)
-                action.toggled.connect(run)
-            else:
-                action.triggered.connect(lambda *_: run())
-            if needs is None or needs in known:
-                bar.addAction(action)
-            self._icons[name] = action
-            return action
-
-        noop = QT_TRANSLATE_NOOP
-        add("fit", noop("Swarf", "Show the whole stock (F)"), lambda: self.view.fit())
-        add("isometric", noop("Swarf", "Look from the corner (0); 1 to 6: the sides"),
-            lambda: self.view.look("isometric"))
-        add("perspective", noop("Swarf", "Perspective (P)"), self._set_perspective, settings.flag("Perspective"))
-        add("cutter", noop("Swarf", "Show the cutter"), self._set_cutter, settings.flag("ShowCutter"), "cutter")
-        add("path", noop("Swarf", "Show the tool's path"), self._set_path, settings.flag("ShowPath"), "path")
-        self.colouring = QtWidgets.QComboBox()
-        self.colouring.setObjectName("SwarfColouring")
-        self.colouring.setToolTip(translate("Swarf", "What the colours of the stock show"))
-        for name, text in COLOURINGS:
-            self.colouring.addItem(translate("Swarf", text), name)
-        self.colouring.currentIndexChanged.connect(lambda *_: self._wish())
-        if hasattr(self._swarf.Scene, "set_surface"):  # else the scene does not know which move made what
-            bar.addWidget(self.colouring)
-        spring = QtWidgets.QWidget()
-        spring.setSizePolicy(QtWidgets.QSizePolicy.Expanding, QtWidgets.QSizePolicy.Preferred)
-        bar.addWidget(spring)
-        add("reload", noop("Swarf", "Read the job again"), self.reload)
-        add("keep", noop("Swarf", "Put the result into the document"), self.keep_result)
-        picture = add("picture", noop("Swarf", "Picture or animation"), lambda: None)
-        menu = QtWidgets.QMenu(self)
-        for text, run in ((noop("Swarf", "Copy the picture"), lambda: export.copy(self.view.image())),
-                          (noop("Swarf", "Save the picture ..."), self._ask_picture),
-                          (noop("Swarf", "Save an animation ..."), self._ask_animation)):
-            action = QAction(translate("Swarf", text), menu)
-            action.triggered.connect(lambda *_, run=run: run())
-            menu.addAction(action)
-        picture.setMenu(menu)
-        bar.widgetForAction(picture).setPopupMode(QtWidgets.QToolButton.InstantPopup)
-        self._take_theme()
-        return bar
-
-    def _take_theme(self):
-        for name, action in self._icons.items():
-            action.setIcon(icons.icon(name, self.palette()))
-
     def _connect(self):
+        presses = {"fit": self.view.fit, "isometric": lambda: self.view.look("isometric"), "reload": self.reload,
+                   "keep": self.files.keep_result, "copy": self.files.copy_picture,
+                   "save-picture": self.files.ask_picture, "save-animation": self.files.ask_animation}
+        self.tools.pressed.connect(lambda name: presses[name]())
+        switches = {"perspective": self._set_perspective, "cutter": self._set_cutter, "path": self._set_path}
+        self.tools.switched.connect(lambda name, on: switches[name](on))
+        self.tools.coloured.connect(self._wish)
         self.view.camera_changed.connect(self._wish)
-        self.view.clicked.connect(self.pick)
+        self.view.clicked.connect(self.picking.pick)
         self.timeline.sought.connect(self.seek)
         self.bar.play_pressed.connect(self.toggle)
         self.bar.stepped.connect(self.step)
@@ -186,12 +131,31 @@ class LivePanel(QtWidgets.QDockWidget):
         self.program.chosen.connect(self._go_to_line)
         self.accuracy.chosen.connect(lambda voxel: self.reload(voxel))
 
+    # For the parts of the panel
+
+    @property
+    def job(self):
+        """The job that is watched, None once it is gone."""
+        return self._watch.job if self._watch is not None else None
+
+    def call(self, function, on_result):
+        """Do function(session, progress) in the engine's thread; on_result(result, error) follows in this one."""
+        self._engine.call(function, self._bridge.answer_to(on_result))
+
+    def cancel_call(self):
+        """Break off what call() does."""
+        if self._engine is not None:
+            self._engine.cancel()
+
+    def is_cancelled(self, error):
+        """Whether an error is that the user broke it off."""
+        return isinstance(error, self._swarf.Cancelled)
+
     # Opening and closing
 
     def watch(self, job, voxel_mm=None):
         """Read a job and show it; voxel_mm None: from the preferences."""
         self.close_job()
-        self._job = job
         self._watch = JobWatch(job, self)
         self._watch.changed.connect(self._job_changed)
         self._watch.deleted.connect(lambda: self._job_gone(translate(
@@ -232,12 +196,12 @@ class LivePanel(QtWidgets.QDockWidget):
 
     def reload(self, voxel_mm=None):
         """Read the job again, with another voxel size or the same, and go back to where it stood."""
-        job = self._watch.job if self._watch is not None else None
+        job = self.job
         if job is None:
             self.fail(JobError(translate("Swarf", "The job is gone: select another one and start again.")))
             return
         place = self.transport.wanted if self.transport is not None else None
-        keep = self._session.voxel_mm if self._session is not None else self.accuracy.voxel.value()
+        keep = self.session.voxel_mm if self.session is not None else self.accuracy.voxel.value()
         self.watch(job, voxel_mm or keep)
         self._resume = place
 
@@ -248,7 +212,7 @@ class LivePanel(QtWidgets.QDockWidget):
     def _ended(self, engine):
         if engine in self._old_engines:
             self._old_engines.remove(engine)
-        if engine is self._engine and self._session is None:
+        if engine is self._engine and self.session is None:
             self._engine = None
             self._show_state()
 
@@ -262,14 +226,14 @@ class LivePanel(QtWidgets.QDockWidget):
         if self._engine is not None:
             self._engine.stop()
             self._old_engines.append(self._engine)
-        self._engine = self._session = self._watch = self._job = None
-        self.transport = self._resume = self._picked = self._line = None
+        self._engine = self.session = self._watch = None
+        self.transport = self._resume = self._line = None
         self.view.close_job()
         self.view.mark, self.view.caption = None, ("", "", None)
         self.timeline.open(None)
         self.operations.open(None, ())
         self.program.open(None)
-        self.inspector.show_values(None)
+        self.picking.close_job()
         self.bar.set_playing(False)
         self.banner.done()
         self._show_state()
@@ -277,25 +241,25 @@ class LivePanel(QtWidgets.QDockWidget):
     def closeEvent(self, event):
         """Closing the panel ends the work."""
         self.close_job()
-        self.keeper.cancel()
+        self.files.keeper.cancel()
         super().closeEvent(event)
 
     def shut_down(self):
         """FreeCAD quits: no thread may be left that would call into what is gone."""
         self.close_job()
-        self.keeper.cancel()
+        self.files.keeper.cancel()
         for engine in list(self._old_engines):
             engine.join(QUIT_SECONDS)
-        self.keeper.join(QUIT_SECONDS)
+        self.files.keeper.join(QUIT_SECONDS)
 
     # What the engine tells
 
     def _progress(self, fraction):
-        if self._session is None and self.banner.working:
+        if self.session is None and self.banner.working:
             self.banner.progress(fraction)
 
     def _opened(self, session):
-        self._session = session
+        self.session = session
         self.banner.done()
         self.transport = model.Transport(session.clock, session.stops)
         self.transport.speed = settings.speed()
@@ -318,7 +282,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self._wish()
 
     def _failed(self, error):
-        if isinstance(error, self._swarf.Cancelled):
+        if self.is_cancelled(error):
             self.banner.say("note", translate("Swarf", "Cancelled."), translate("Swarf", "Again"), self.reload)
             return
         if self.transport is not None:
@@ -333,7 +297,7 @@ class LivePanel(QtWidgets.QDockWidget):
             text = translate("Swarf", "Not enough memory: {0} Choose larger voxels on the page Accuracy.").format(
                 text.rstrip(".") + ".")
             self.tabs.setCurrentWidget(self.accuracy)
-        retry = self._watch is not None and self._watch.job is not None
+        retry = self.job is not None
         self.banner.say("error", text, translate("Swarf", "Read the job again"), self.reload if retry else None)
         FreeCAD.Console.PrintError("Swarf: %s\n" % text)
 
@@ -350,7 +314,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self._show_place()
 
     def _show_place(self):
-        session, place = self._session, self.transport.at
+        session, place = self.session, self.transport.at
         listing, last = session.listing, len(session.clock)
         move = min(int(place), max(last - 1, 0))
         line, operation = listing.line_of(move), listing.operation_at(move)
@@ -374,7 +338,7 @@ class LivePanel(QtWidgets.QDockWidget):
         bottom, top = colours.background(self.palette())
         return (("background", bottom), ("background_top", top), ("occlusion", settings.flag("Occlusion")),
                 ("shadow", settings.flag("Shadow")), ("edges", True),
-                ("colouring", self.colouring.currentData()), ("colour", colours.MATERIAL))
+                ("colouring", self.tools.colouring), ("colour", colours.MATERIAL))
 
     def current_view(self, size=None):
         """session.View of what is shown, or of another size (width, height) of the picture."""
@@ -383,7 +347,7 @@ class LivePanel(QtWidgets.QDockWidget):
                              settings.flag("ShowPath"))
 
     def _wish(self):
-        if self._engine is not None and self._session is not None and self.view.camera is not None:
+        if self._engine is not None and self.session is not None and self.view.camera is not None:
             self._engine.wish(self.transport.wanted, self.current_view())
 
     def _tick(self):
@@ -411,7 +375,7 @@ class LivePanel(QtWidgets.QDockWidget):
         """Stop, and go to a place."""
         if self.transport is None:
             return
-        if self._line is not None and place != self._session.listing.moves_of(self._line)[1]:
+        if self._line is not None and place != self.session.listing.moves_of(self._line)[1]:
             self._line = None
         self.transport.seek(place)
         self._timer.stop()
@@ -422,7 +386,7 @@ class LivePanel(QtWidgets.QDockWidget):
         """One of the steps of the transport's buttons."""
         if self.transport is None:
             return
-        listing, at = self._session.listing, self.transport.wanted
+        listing, at = self.session.listing, self.transport.wanted
         self.seek({"operation-back": listing.previous_operation, "operation-forward": listing.next_operation,
                    "line-back": listing.previous_line, "line-forward": listing.next_line,
                    "move-back": lambda place: -(-place // 1) - 1, "move-forward": lambda place: place // 1 + 1}
@@ -440,14 +404,14 @@ class LivePanel(QtWidgets.QDockWidget):
             self.transport.enabled = set(kinds)
 
     def _go_to_operation(self, index):
-        if self._session is not None:
-            self.seek(self._session.listing.operation_begin[index])
+        if self.session is not None:
+            self.seek(self.session.listing.operation_begin[index])
 
     def _go_to_line(self, line):
         """Show what a line has cut: stand behind its last move, but keep it marked, not the next one."""
-        if self._session is not None:
+        if self.session is not None:
             self._line = line
-            self.seek(self._session.listing.moves_of(line)[1])
+            self.seek(self.session.listing.moves_of(line)[1])
 
     def _set_perspective(self, on):
         settings.set_flag("Perspective", on)
@@ -461,118 +425,24 @@ class LivePanel(QtWidgets.QDockWidget):
         settings.set_flag("ShowPath", on)
         self._wish()
 
-    def pick(self, x, y):
-        """Tell what made the point at a place of the picture."""
-        if self._session is None or self.view.camera is None:
-            return
-        view, place = self.current_view(), self.transport.at
-        self._engine.call(lambda session, progress: session.pick(view, x, y, place),
-                          self._bridge.answer_to(self._picked_point))
-
-    def _picked_point(self, found, error):
-        session = self._session
-        if session is None:
-            return
-        if error is not None:
-            self.fail(error)
-            return
-        self._picked = found
-        self.view.mark = found.point if found else None
-        self.view.update()
-        if found is None:
-            self.inspector.show_values(None)
-            return
-        values = {"point": "X %.3f  Y %.3f  Z %.3f" % found.point,
-                  "depth": translate("Swarf", "{0:.3f} mm").format(found.depth_below_top),
-                  "slope": "%.1f°" % found.slope_deg, "hint": ""}
-        if found.move < 0:
-            values["hint"] = translate("Swarf", "The stock as it was: nothing was cut here yet.")
-        else:
-            listing = session.listing
-            number = abs(listing.number[found.line])
-            values.update(operation=listing.operations[found.operation].name,
-                          line="%d: %s" % (number, listing.text(found.line)),
-                          tool="T%d %s" % (found.tool, session.data.tools.get(found.tool, ("",))[0]),
-                          time=clocks.text_of(session.clock.time_of(found.move)))
-            self.program.set_current(found.line)
-            self.operations.set_current(found.operation)
-            self._select_in_tree(listing.operations[found.operation].source)
-        self.inspector.show_values(values)
-        self.tabs.setCurrentWidget(self.inspector)
-
-    def _document_object(self, name):
-        job = self._watch.job if self._watch is not None else None
-        return job.Document.getObject(name) if job is not None and name else None
-
-    def _select_in_tree(self, name):
-        obj = self._document_object(name)
-        if obj is not None:
-            Gui.Selection.clearSelection()
-            Gui.Selection.addSelection(obj)
+    def document_object(self, name):
+        """The object of this name beside the job, None when it or the job is gone."""
+        return self.job.Document.getObject(name) if self.job is not None and name else None
 
     def _path_is_shown(self, index):
-        obj = self._document_object(self._session.listing.operations[index].source)
+        obj = self.document_object(self.session.listing.operations[index].source)
         view = getattr(obj, "ViewObject", None)
         return bool(view is not None and view.Visibility)
 
     def _show_path_of(self, index, shown):
-        obj = self._document_object(self._session.listing.operations[index].source)
+        obj = self.document_object(self.session.listing.operations[index].source)
         if obj is not None and getattr(obj, "ViewObject", None) is not None:
             obj.ViewObject.Visibility = shown
-
-    # Results
-
-    def keep_result(self):
-        """Put the whole program's result into the document."""
-        job = self._watch.job if self._watch is not None else None
-        if job is None or self._session is None:
-            self.fail(JobError(translate("Swarf", "The job is gone: its result cannot be kept.")))
-            return
-        self.keeper.start(job, self._session.voxel_mm)
-
-    def _ask_picture(self):
-        path = export.ask_file(self, translate("Swarf", "Save the picture"), "swarf.png", "PNG (*.png)")
-        if path:
-            self.save_picture(path)
-
-    def save_picture(self, path):
-        """The picture as good as it gets to a PNG file."""
-        if self._session is None:
-            return
-        view, place = self.current_view(), self.transport.at
-        self.banner.work(translate("Swarf", "Drawing ..."), self._engine.cancel)
-        self._engine.call(lambda session, progress: session.write_png(path, view, place, progress),
-                          self._bridge.answer_to(lambda _, error: self._written(path, error)))
-
-    def _ask_animation(self):
-        folder = export.ask_folder(self, translate("Swarf", "Folder for the frames of the animation"))
-        if folder:
-            self.save_animation(folder)
-
-    def save_animation(self, folder, count=export.FRAMES_PER_SECOND * export.LENGTH_SECONDS, size=export.SIZE):
-        """The whole program as frames, and a video where there is an encoder."""
-        if self._session is None:
-            return
-        self.seek(self.transport.at)
-        view, report = self.current_view(size), export.Report(self)
-        report.came.connect(self.banner.progress, QtCore.Qt.QueuedConnection)
-        self.banner.work(translate("Swarf", "Drawing the animation ..."), self._engine.cancel)
-        self._engine.call(lambda session, progress: export.write_animation(session, progress, folder, view, count,
-                                                                           report),
-                          self._bridge.answer_to(lambda path, error: self._written(path, error)))
-
-    def _written(self, path, error):
-        if isinstance(error, self._swarf.Cancelled):
-            self.banner.say("note", translate("Swarf", "Cancelled."))
-        elif error is not None:
-            self.fail(error)
-        else:
-            self.banner.say("note", translate("Swarf", "Written: {0}").format(path))
 
     # The document
 
     def _job_changed(self, differs):
-        if self._session is None:
+        if self.session is None:
             return
         if differs:
             self.banner.say("warning", translate("Swarf", "The job was changed. What you see is how it was."),
@@ -581,25 +451,24 @@ class LivePanel(QtWidgets.QDockWidget):
             self.banner.done()
 
     def _job_gone(self, text):
-        self.keeper.cancel()
-        if self._session is None:
+        self.files.keeper.cancel()
+        if self.session is None:
             self.close_job()
             text = translate("Swarf", "The job was deleted while it was being read.")
         self.banner.say("warning", text)
         self._show_state()
 
     def _document_closed(self):
-        self.keeper.cancel()
+        self.files.keeper.cancel()
         self.close_job()
         self.banner.say("note", translate("Swarf", "The document was closed."))
 
     def _show_state(self):
-        ready = self._session is not None
-        alive = self._watch is not None and self._watch.job is not None
+        ready = self.session is not None
+        alive = self.job is not None
         for widget in (self.bar, self.timeline):
             widget.setEnabled(ready)
-        for name, action in self._icons.items():
-            action.setEnabled(ready if name not in ("reload", "keep") else alive and (ready or name == "reload"))
+        self.tools.show_state(ready, alive)
         self.accuracy.apply.setEnabled(alive)
         if self.transport is not None:
             self.bar.set_playing(self.transport.playing)
@@ -621,7 +490,7 @@ class LivePanel(QtWidgets.QDockWidget):
         elif key in (qt.Key_Up, qt.Key_Down):
             self.set_speed(self.transport.faster(1 if key == qt.Key_Up else -1))
         elif key == qt.Key_P:
-            self._icons["perspective"].toggle()
+            self.tools.actions_by_name["perspective"].toggle()
         else:
             super().keyPressEvent(event)
 
@@ -636,8 +505,7 @@ class LivePanel(QtWidgets.QDockWidget):
     def changeEvent(self, event):
         """The theme may have changed."""
         super().changeEvent(event)
-        if event.type() in (QtCore.QEvent.PaletteChange, QtCore.QEvent.StyleChange) and hasattr(self, "_icons"):
-            self._take_theme()
+        if event.type() in (QtCore.QEvent.PaletteChange, QtCore.QEvent.StyleChange) and hasattr(self, "tools"):
             self._wish()
 
 

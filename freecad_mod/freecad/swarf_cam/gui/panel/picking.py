@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A click on the stock: asks the engine what made the point, and shows the answer in the lists and in FreeCAD's tree."""
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from ...core import clock as clocks
+
+translate = FreeCAD.Qt.translate
+
+
+class Picking:
+    """The panel's clicks. found: the session.Picked that is shown, None for none."""
+
+    def __init__(self, panel):
+        self._panel = panel
+        self.found = None
+
+    def close_job(self):
+        """Forget the point."""
+        self.found = None
+        self._panel.inspector.show_values(None)
+
+    def pick(self, x, y):
+        """Tell what made the point at a place of the picture."""
+        panel = self._panel
+        if panel.session is None or panel.view.camera is None:
+            return
+        view, place = panel.current_view(), panel.transport.at
+        panel.call(lambda session, progress: session.pick(view, x, y, place), self._answered)
+
+    def _answered(self, found, error):
+        panel = self._panel
+        if panel.session is None:
+            return
+        if error is not None:
+            panel.fail(error)
+            return
+        self.found = found
+        panel.view.mark = found.point if found else None
+        panel.view.update()
+        if found is None:
+            panel.inspector.show_values(None)
+            return
+        panel.inspector.show_values(self._values(panel.session, found))
+        if found.move >= 0:
+            panel.program.set_current(found.line)
+            panel.operations.set_current(found.operation)
+            self._select_in_tree(panel.session.listing.operations[found.operation].source)
+        panel.tabs.setCurrentWidget(panel.inspector)
+
+    @staticmethod
+    def _values(session, found):
+        """Texts of the inspector's rows."""
+        values = {"point": "X %.3f  Y %.3f  Z %.3f" % found.point,
+                  "depth": translate("Swarf", "{0:.3f} mm").format(found.depth_below_top),
+                  "slope": "%.1f°" % found.slope_deg, "hint": ""}
+        if found.move < 0:
+            values["hint"] = translate("Swarf", "The stock as it was: nothing was cut here yet.")
+        else:
+            listing = session.listing
+            number = abs(listing.number[found.line])
+            values.update(operation=listing.operations[found.operation].name,
+                          line="%d: %s" % (number, listing.text(found.line)),
+                          tool="T%d %s" % (found.tool, session.data.tools.get(found.tool, ("",))[0]),
+                          time=clocks.text_of(session.clock.time_of(found.move)))
+        return values
+
+    def _select_in_tree(self, name):
+        obj = self._panel.document_object(name)
+        if obj is not None:
+            Gui.Selection.clearSelection()
+            Gui.Selection.addSelection(obj)

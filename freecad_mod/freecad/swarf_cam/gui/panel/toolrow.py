@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The row of tools over the picture: views, what is shown, colours, files."""
+
+import FreeCAD
+
+from .. import icons, settings
+from ..qt import QAction, QtCore, QtWidgets
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+# Scene.render's names and what they are called here.
+COLOURINGS = (("material", QT_TRANSLATE_NOOP("Swarf", "Material")),
+              ("operation", QT_TRANSLATE_NOOP("Swarf", "By operation")), ("tool", QT_TRANSLATE_NOOP("Swarf", "By tool")),
+              ("age", QT_TRANSLATE_NOOP("Swarf", "By age")), ("feed", QT_TRANSLATE_NOOP("Swarf", "By feed")))
+
+# Name of icon and tool, what it says, and of those that stay down: the setting that keeps it, and the keyword that
+# Scene.render must know.
+VIEWS = (("fit", QT_TRANSLATE_NOOP("Swarf", "Show the whole stock (F)"), None, None),
+         ("isometric", QT_TRANSLATE_NOOP("Swarf", "Look from the corner (0); 1 to 6: the sides"), None, None),
+         ("perspective", QT_TRANSLATE_NOOP("Swarf", "Perspective (P)"), "Perspective", None),
+         ("cutter", QT_TRANSLATE_NOOP("Swarf", "Show the cutter"), "ShowCutter", "cutter"),
+         ("path", QT_TRANSLATE_NOOP("Swarf", "Show the tool's path"), "ShowPath", "path"))
+RESULTS = (("reload", QT_TRANSLATE_NOOP("Swarf", "Read the job again"), None, None),
+           ("keep", QT_TRANSLATE_NOOP("Swarf", "Put the result into the document"), None, None))
+FILES = (("copy", QT_TRANSLATE_NOOP("Swarf", "Copy the picture")),
+         ("save-picture", QT_TRANSLATE_NOOP("Swarf", "Save the picture ...")),
+         ("save-animation", QT_TRANSLATE_NOOP("Swarf", "Save an animation ...")))
+
+# What can be done while a job is there, even when it is not open.
+WITHOUT_SESSION = ("reload",)
+ON_THE_JOB = ("reload", "keep")
+
+
+class ToolRow(QtWidgets.QToolBar):
+    """Tells the name of what was pressed, and of what was switched on or off; coloured when another colouring was
+    chosen. keywords: those of Scene.render; by_move: whether a scene knows which move made what."""
+
+    pressed = QtCore.Signal(str)
+    switched = QtCore.Signal(str, bool)
+    coloured = QtCore.Signal()
+
+    def __init__(self, keywords, by_move, parent=None):
+        super().__init__(parent)
+        self.setIconSize(QtCore.QSize(18, 18))
+        self.actions_by_name = {}
+        for tool in VIEWS:
+            self._add(*tool, keywords)
+        self._colouring = QtWidgets.QComboBox()
+        self._colouring.setObjectName("SwarfColouring")
+        self._colouring.setToolTip(translate("Swarf", "What the colours of the stock show"))
+        for name, text in COLOURINGS:
+            self._colouring.addItem(translate("Swarf", text), name)
+        self._colouring.currentIndexChanged.connect(lambda *_: self.coloured.emit())
+        if by_move:
+            self.addWidget(self._colouring)
+        spring = QtWidgets.QWidget()
+        spring.setSizePolicy(QtWidgets.QSizePolicy.Expanding, QtWidgets.QSizePolicy.Preferred)
+        self.addWidget(spring)
+        for tool in RESULTS:
+            self._add(*tool, keywords)
+        self._add_files()
+        self.take_theme()
+
+    def _add(self, name, text, setting, needs, keywords):
+        action = QAction(translate("Swarf", text), self)
+        action.setObjectName("Swarf-" + name)
+        if setting is not None:
+            action.setCheckable(True)
+            action.setChecked(settings.flag(setting))
+            action.toggled.connect(lambda on: self.switched.emit(name, on))
+        else:
+            action.triggered.connect(lambda *_: self.pressed.emit(name))
+        if needs is None or needs in keywords:
+            self.addAction(action)
+        self.actions_by_name[name] = action
+
+    def _add_files(self):
+        button = QAction(translate("Swarf", "Picture or animation"), self)
+        button.setObjectName("Swarf-picture")
+        menu = QtWidgets.QMenu(self)
+        for name, text in FILES:
+            action = QAction(translate("Swarf", text), menu)
+            action.triggered.connect(lambda *_, name=name: self.pressed.emit(name))
+            menu.addAction(action)
+        button.setMenu(menu)
+        self.addAction(button)
+        self.widgetForAction(button).setPopupMode(QtWidgets.QToolButton.InstantPopup)
+        self.actions_by_name["picture"] = button
+
+    @property
+    def colouring(self):
+        """Scene.render's name of the colouring that is chosen."""
+        return self._colouring.currentData()
+
+    def set_colouring(self, name):
+        """Choose a colouring."""
+        self._colouring.setCurrentIndex(self._colouring.findData(name))
+
+    def show_state(self, ready, alive):
+        """ready: a job is open. alive: it is still in its document."""
+        for name, action in self.actions_by_name.items():
+            action.setEnabled((alive or name not in ON_THE_JOB) and (ready or name in WITHOUT_SESSION))
+
+    def take_theme(self):
+        """Icons in the theme's colours."""
+        for name, action in self.actions_by_name.items():
+            action.setIcon(icons.icon(name, self.palette()))
+
+    def changeEvent(self, event):
+        """The theme may have changed."""
+        super().changeEvent(event)
+        if event.type() in (QtCore.QEvent.PaletteChange, QtCore.QEvent.StyleChange) and \
+                hasattr(self, "actions_by_name"):
+            self.take_theme()
