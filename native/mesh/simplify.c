@@ -101,6 +101,7 @@ static void free_region(simplify_region *r)
     free(r->head);
     free(r->state);
     free(r->mark);
+    free(r->need);
     free(r->v);
     free(r->of);
     free(r->next);
@@ -123,6 +124,7 @@ static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, 
             r->global[own] = vertex;
             r->head[own] = SWARF_NO_VERTEX;
             r->mark[own] = 0;
+            r->need[own] = INFINITY;
             r->state[own] = j->locked && j->locked[vertex] ? SIMPLIFY_FIXED : j->settled[vertex] ? 0 : SIMPLIFY_DIRTY;
             for (int c = 0; c < 3; c++)
                 r->xyz[3 * (size_t)own + (size_t)c] = j->facets->xyz[3 * (size_t)vertex + (size_t)c];
@@ -148,12 +150,13 @@ static swarf_status simplify_cube(void *context, size_t cube)
     r.head = malloc(vertices * sizeof *r.head);
     r.state = malloc(vertices);
     r.mark = malloc(vertices * sizeof *r.mark);
+    r.need = malloc(vertices * sizeof *r.need);
     r.v = malloc(vertices * sizeof *r.v);
     r.of = malloc(facets * sizeof *r.of);
     r.next = malloc(vertices * sizeof *r.next);
     r.alive = malloc(facets);
     swarf_status status = SWARF_OK;
-    if (!r.xyz || !r.global || !r.head || !r.state || !r.mark || !r.v || !r.of || !r.next || !r.alive) {
+    if (!r.xyz || !r.global || !r.head || !r.state || !r.mark || !r.need || !r.v || !r.of || !r.next || !r.alive) {
         status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     } else {
         for (size_t i = 0; i < owned; i++) add_facet(j, &r, cube, j->owned[owned_first + i], 0);

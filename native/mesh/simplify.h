@@ -16,6 +16,7 @@ typedef struct simplify_region {
     uint32_t *head;   /* first corner (facet * 3 + k) of each vertex's list */
     uint8_t *state;   /* SIMPLIFY_FIXED, SIMPLIFY_DIRTY */
     uint32_t *mark;   /* stamps of the ring being looked at */
+    float *need;      /* error below which a vertex that was looked at cannot go while its ring stays */
     size_t vertex_count;
     uint32_t *v;      /* 3 per facet, the region's numbers */
     swarf_facet **of; /* the facet in the whole mesh */

@@ -31,7 +31,12 @@ static const double least_shape = 0.02;
 
 /* A choice that leaves facets as good as this is taken without looking at the others: they cost most of the time. */
 static const double good_enough = 0.5;
+/* Flat rings, of which there are most: true normals (of length 32767) differ by this, vertices by this part of the
+ * limit; and what is good enough there, where all but the border goes in the end. */
+static const double flat_normal = 8, flat_part = 0.05, flat_enough = 0.3;
 
+/* The facets round a vertex, in coordinates from it: those are small, so that doubles lose nothing, and all lengths and
+ * angles come from the products of the ring's vertices. */
 typedef struct ring {
     int count;
     uint32_t vertex[MOST]; /* facet i: the middle, vertex i, vertex i + 1 */
@@ -39,12 +44,12 @@ typedef struct ring {
     uint8_t crease[MOST]; /* whether the edge to vertex i is one of the surface */
     double error;         /* greatest of the facets */
     double shape;         /* least; negative: not measured yet */
+    double slab;          /* of a flat ring: half of its thickness, across the true normal; else negative */
+    double at[MOST][3];
+    double normal[MOST][3]; /* of facet i with its old place, not unit */
+    double true_normal[MOST][3];
+    double dots[MOST][MOST]; /* of at[i] and at[k] */
 } ring;
-
-static void sub(const double a[3], const double b[3], double out[3])
-{
-    for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
-}
 
 static double dot(const double a[3], const double b[3])
 {
@@ -69,47 +74,32 @@ static double most_of(double a, double b)
     return a > b ? a : b;
 }
 
-/* Squared distance to a segment. */
-static double to_segment(const double p[3], const double a[3], const double b[3])
+/* Squared distance of the middle to the segment between ring vertices i and j. */
+static double to_segment(const ring *around, int i, int j)
 {
-    double ab[3], ap[3];
-    sub(b, a, ab);
-    sub(p, a, ap);
-    const double square = dot(ab, ab), along = dot(ap, ab);
+    const double start = around->dots[i][i], along = start - around->dots[i][j];
+    const double square = start + around->dots[j][j] - 2 * around->dots[i][j];
     const double t = along <= 0 || square <= 0 ? 0 : along >= square ? 1 : along / square;
-    double away = 0;
-    for (int k = 0; k < 3; k++) away += (ap[k] - t * ab[k]) * (ap[k] - t * ab[k]);
-    return away;
+    return most_of(0, start - 2 * t * along + t * t * square);
 }
 
-/* Squared distance to the plane of a triangle where the point lies over it, else INFINITY. */
-static double over_triangle(const double ap[3], const double ab[3], const double ac[3], const double n[3])
+/* Squared distance between the edge from the middle to ring vertex i and that from ring vertex j to k where they pass
+ * each other between their ends, else 0. */
+static double where_they_pass(const ring *around, int i, int j, int k)
 {
-    const double square = dot(n, n);
-    double t[3];
-    cross(ap, ac, t);
-    const double u = dot(t, n);
-    if (!(u >= 0)) return INFINITY;
-    cross(ab, ap, t);
-    const double v = dot(t, n);
-    if (!(v >= 0 && u + v <= square && square > 0)) return INFINITY;
-    const double away = dot(ap, n);
-    return away * away / square;
-}
-
-/* Squared distance between two segments (from a point along a vector) where they pass each other between their ends,
- * else 0. */
-static double where_they_pass(const double p[3], const double along[3], const double q[3], const double across[3])
-{
-    double w[3];
-    sub(p, q, w);
-    const double a = dot(along, along), b = dot(along, across), c = dot(across, across);
-    const double d = dot(along, w), e = dot(across, w), size = a * c - b * b;
+    const double ij = around->dots[i][j], jj = around->dots[j][j];
+    const double a = around->dots[i][i], b = around->dots[i][k] - ij;
+    const double c = around->dots[k][k] + jj - 2 * around->dots[j][k];
+    const double d = -ij, e = jj - around->dots[j][k], size = a * c - b * b;
     if (size <= 1e-9 * a * c) return 0;
-    const double s = (b * e - c * d) / size, t = (a * e - b * d) / size;
-    if (s <= 0 || s >= 1 || t <= 0 || t >= 1) return 0;
+    const double s = b * e - c * d, t = a * e - b * d;
+    if (s <= 0 || s >= size || t <= 0 || t >= size) return 0;
+    const double u = s / size, v = t / size;
     double away = 0;
-    for (int k = 0; k < 3; k++) away += (w[k] + s * along[k] - t * across[k]) * (w[k] + s * along[k] - t * across[k]);
+    for (int n = 0; n < 3; n++) {
+        const double part = u * around->at[i][n] - (1 - v) * around->at[j][n] - v * around->at[k][n];
+        away += part * part;
+    }
     return away;
 }
 
@@ -120,24 +110,19 @@ static double normals_dot(const swarf_facet *a, const swarf_facet *b)
     return sum / (32767.0 * 32767.0);
 }
 
-/* Squared shape of the triangle 0, a, b (4 sqrt(3) area / sum of squared sides); its normal and the square of that. */
-static inline double shape_of(const double a[3], const double b[3], double normal[3], double *square)
+/* Squared shape of a triangle (4 sqrt(3) area / sum of squared sides) from the square of its normal and that sum. */
+static double shape_of(double square, double sum)
 {
-    double ab[3];
-    sub(b, a, ab);
-    cross(a, b, normal);
-    *square = dot(normal, normal);
-    const double sum = dot(a, a) + dot(b, b) + dot(ab, ab);
-    return sum > 0 ? 12 * *square / (sum * sum) : 0;
+    return sum > 0 ? 12 * square / (sum * sum) : 0;
 }
 
-static double worst_shape(const simplify_region *r, const ring *around, const double *at)
+static double worst_shape(const ring *around)
 {
-    double worst = 1, square, normal[3], a[3], b[3];
+    double worst = 1;
     for (int i = 0; i < around->count; i++) {
-        sub(r->xyz + 3 * (size_t)around->vertex[i], at, a);
-        sub(r->xyz + 3 * (size_t)around->vertex[i + 1 < around->count ? i + 1 : 0], at, b);
-        worst = least_of(worst, shape_of(a, b, normal, &square));
+        const int after = i + 1 < around->count ? i + 1 : 0;
+        const double sum = 2 * (around->dots[i][i] + around->dots[after][after] - around->dots[i][after]);
+        worst = least_of(worst, shape_of(dot(around->normal[i], around->normal[i]), sum));
     }
     return worst;
 }
@@ -201,69 +186,81 @@ static int keeps_topology(const simplify_region *r, const ring *around, int j, u
 /* Squared greatest distance between the edges to v that go and the edges to u = ring vertex j that come, where they
  * pass each other: with v's own distance it is that between the old facets and the new. On an edge of the surface its
  * two sides do not mix. */
-static double between_edges(const simplify_region *r, const ring *around, int j, const double *at)
+static double between_edges(const ring *around, int j)
 {
     const int n = around->count;
-    const double *u = r->xyz + 3 * (size_t)around->vertex[j];
-    double most = 0, come[3], go[3];
+    double most = 0;
     int side = 0, side_of[MOST];
-    for (int step = 1; step < n; step++) {
-        const int i = (j + step) % n;
+    for (int step = 1, i = j; step < n; step++) {
+        i = i + 1 < n ? i + 1 : 0;
         if (around->crease[j] && around->crease[i]) side++;
         side_of[i] = around->crease[i] && around->crease[j] ? -1 : side;
     }
-    for (int step = 2; step < n - 1; step++) {
-        const int k = (j + step) % n;
-        if (side_of[k] < 0) continue;
-        sub(r->xyz + 3 * (size_t)around->vertex[k], u, come);
-        for (int other = 1; other < n; other++) {
-            const int i = (j + other) % n;
-            if (i == k || side_of[i] != side_of[k]) continue;
-            sub(r->xyz + 3 * (size_t)around->vertex[i], at, go);
-            most = most_of(most, where_they_pass(at, go, u, come));
-        }
+    for (int k = 0; k < n; k++) {
+        if (k == j || k == (j + 1) % n || k == (j + n - 1) % n || side_of[k] < 0) continue;
+        for (int i = 0; i < n; i++)
+            if (i != j && i != k && side_of[i] == side_of[k]) most = most_of(most, where_they_pass(around, i, j, k));
     }
     return most;
 }
 
-/* Error and worst shape after drawing v onto ring vertex j; 0 when it is too much, a facet turns or becomes a needle.
- * Where v lies over none of the new facets its distance is that from the edges between them, which is not less. */
-static int try_draw(const simplify_region *r, ring *around, int j, const double *at, double limit, double *error,
-                    double *shape)
+/* Of several choices the best has the best worst facet, and little error. */
+static double score_of(double shape, double error, double limit)
+{
+    return sqrt(shape) * (1 - 0.95 * error / limit);
+}
+
+/* Error and score of drawing v onto ring vertex j; 0 when the error is too much, a facet turns or becomes a needle, or
+ * the score is not above `least`: the error is then a lower bound of what it takes. Where v lies over none of the new
+ * facets its distance is that from the edges between them, which is not less. */
+static int try_draw(ring *around, int j, double limit, double least, double *error, double *score)
 {
     const int n = around->count;
-    const double *u = r->xyz + 3 * (size_t)around->vertex[j];
+    const double *u = around->at[j];
     const double spare = (limit - around->error) * (limit - around->error);
-    double nearest = INFINITY, to_v[3], a[3], b[3], normal[3], square;
-    sub(at, u, to_v);
-    *shape = 1;
+    double nearest = INFINITY, before[3], after[3], normal[3];
+    double shape = 1;
+    *error = INFINITY;
     int i = j + 1 < n ? j + 1 : 0;
-    sub(r->xyz + 3 * (size_t)around->vertex[i], u, a);
+    cross(u, around->at[i], before);
     for (int left = n - 2; left > 0; left--) {
-        const int after = i + 1 < n ? i + 1 : 0;
-        sub(r->xyz + 3 * (size_t)around->vertex[after], u, b);
-        *shape = least_of(*shape, shape_of(a, b, normal, &square));
-        if (*shape < least_shape * least_shape) {
-            if (around->shape < 0) around->shape = worst_shape(r, around, at);
-            if (*shape <= around->shape) return 0;
-        }
-        const int16_t *true_normal = r->of[around->facet[i]]->normal;
-        const double facing = normal[0] * true_normal[0] + normal[1] * true_normal[1] + normal[2] * true_normal[2];
+        const int next = i + 1 < n ? i + 1 : 0;
+        cross(u, around->at[next], after);
+        for (int k = 0; k < 3; k++) normal[k] = around->normal[i][k] + before[k] - after[k];
+        const double square = dot(normal, normal), facing = dot(normal, around->true_normal[i]);
         if (facing <= 0 || facing * facing < least_cosine * least_cosine * 32767 * 32767 * square) return 0;
-        nearest = least_of(nearest, over_triangle(to_v, a, b, normal));
-        memcpy(a, b, sizeof a);
-        i = after;
+        const double *ds = around->dots[i], *dn = around->dots[next], *du = around->dots[j];
+        const double own = shape_of(square, 2 * (ds[i] + dn[next] + du[j] - ds[next] - du[i] - du[next]));
+        if (own < least_shape * least_shape) {
+            if (around->shape < 0) around->shape = worst_shape(around);
+            if (own <= around->shape) return 0;
+        }
+        shape = least_of(shape, own);
+        if (least > 0 && shape <= least * least) return 0;
+        if (around->slab < 0 && dot(around->normal[i], normal) >= 0 && dot(before, normal) >= 0 &&
+            dot(after, normal) <= 0) { /* v lies over the facet */
+            const double away = dot(u, normal);
+            nearest = least_of(nearest, away * away / square);
+        }
+        memcpy(before, after, sizeof before);
+        i = next;
+    }
+    if (around->slab >= 0) { /* old facets and new cover the same ground within it */
+        *error = around->error + 2 * around->slab;
+        *score = sqrt(shape);
+        return *error <= limit;
     }
     if (nearest > spare)
         for (i = 0; i < n; i++)
-            if (i != j) nearest = least_of(nearest, to_segment(at, u, r->xyz + 3 * (size_t)around->vertex[i]));
+            if (i != j) nearest = least_of(nearest, to_segment(around, i, j));
     if (around->crease[j])
         for (i = 0; i < n; i++)
-            if (around->crease[i] && i != j)
-                nearest = most_of(nearest, to_segment(at, u, r->xyz + 3 * (size_t)around->vertex[i]));
-    if (nearest > spare) return 0;
-    *error = around->error + sqrt(most_of(nearest, between_edges(r, around, j, at)));
-    return *error <= limit;
+            if (around->crease[i] && i != j) nearest = most_of(nearest, to_segment(around, i, j));
+    *error = around->error + sqrt(nearest);
+    if (*error > limit || score_of(shape, *error, limit) <= least) return 0;
+    *error = around->error + sqrt(most_of(nearest, between_edges(around, j)));
+    *score = score_of(shape, *error, limit);
+    return *error <= limit && *score > least;
 }
 
 static void draw(simplify_region *r, const ring *around, int j, uint32_t v, double error)
@@ -286,45 +283,107 @@ static void draw(simplify_region *r, const ring *around, int j, uint32_t v, doub
     for (int i = 0; i < n; i++) r->state[around->vertex[i]] |= SIMPLIFY_DIRTY;
 }
 
+/* The ring's places, normals and products. */
+static void measure_round(const simplify_region *r, uint32_t v, ring *around)
+{
+    const int n = around->count;
+    for (int i = 0; i < n; i++) {
+        const int16_t *true_normal = r->of[around->facet[i]]->normal;
+        for (int k = 0; k < 3; k++) {
+            around->at[i][k] = r->xyz[3 * (size_t)around->vertex[i] + (size_t)k] - r->xyz[3 * (size_t)v + (size_t)k];
+            around->true_normal[i][k] = true_normal[k];
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        cross(around->at[i], around->at[i + 1 < n ? i + 1 : 0], around->normal[i]);
+        for (int k = 0; k <= i; k++) around->dots[i][k] = around->dots[k][i] = dot(around->at[i], around->at[k]);
+    }
+}
+
+/* Find out whether all facets have one true normal and the ring's vertices lie in one plane across it. */
+static void look_flat(ring *around, double limit)
+{
+    const double *n = around->true_normal[0];
+    double most = 0;
+    around->slab = -1;
+    for (int i = 0; i < around->count; i++) {
+        for (int k = 0; k < 3; k++)
+            if (fabs(around->true_normal[i][k] - n[k]) > flat_normal) return;
+        most = most_of(most, fabs(dot(around->at[i], n)));
+    }
+    most /= 32767;
+    if (most <= flat_part * limit) around->slab = most;
+}
+
 static int remove_vertex(simplify_region *r, uint32_t v, double limit)
 {
     ring around;
-    if (!look_round(r, v, &around) || around.error > limit) return 0;
+    r->need[v] = INFINITY;
+    if (!look_round(r, v, &around)) return 0;
+    if (around.error > limit) {
+        r->need[v] = (float)around.error;
+        return 0;
+    }
     int creases = 0;
     for (int i = 0; i < around.count; i++) creases += around.crease[i];
     if (creases != 0 && creases != 2) return 0;
     r->stamp++;
     for (int i = 0; i < around.count; i++) r->mark[around.vertex[i]] = r->stamp;
-    const double *at = r->xyz + 3 * (size_t)v;
+    measure_round(r, v, &around);
+    look_flat(&around, limit);
     int best = -1;
-    double best_score = -1, best_error = 0;
+    double best_score = -1, best_error = 0, least_error = INFINITY;
     for (int j = 0; j < around.count; j++) {
-        double error, shape;
+        double error, score;
         if (creases && !around.crease[j]) continue;
-        if (!try_draw(r, &around, j, at, limit, &error, &shape)) continue;
-        const double score = sqrt(shape) * (1 - 0.95 * error / limit);
-        if (score <= best_score || !keeps_topology(r, &around, j, v)) continue;
+        if (!try_draw(&around, j, limit, best_score, &error, &score)) {
+            least_error = least_of(least_error, error);
+            continue;
+        }
+        if (!keeps_topology(r, &around, j, v)) continue;
         best = j;
         best_score = score;
         best_error = error;
-        if (score > good_enough) break;
+        if (score > (around.slab >= 0 ? flat_enough : good_enough)) break;
     }
-    if (best < 0) return 0;
+    if (best < 0) {
+        r->need[v] = (float)least_error;
+        return 0;
+    }
     draw(r, &around, best, v, best_error);
     return 1;
 }
 
+/* On flat faces, where most vertices go first, those that follow each other should be far apart, so that rings stay
+ * round: a stride near the golden section of the count, without a common divisor. */
+static size_t stride_of(size_t count)
+{
+    size_t stride = (size_t)(0.6180339887 * (double)count) | 1;
+    for (;; stride++) {
+        size_t a = stride, b = count;
+        while (b) {
+            const size_t rest = a % b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1) return stride;
+    }
+}
+
 size_t swarf_simplify_region(simplify_region *r, double limit, int first)
 {
+    const size_t far_apart = stride_of(r->vertex_count);
     static const double steps[] = {0.01, 0.05, 0.15, 0.4, 1};
     for (size_t step = first ? 0 : 4; step < sizeof steps / sizeof *steps; step++) {
-        for (size_t v = 0; first && v < r->vertex_count; v++) r->state[v] |= SIMPLIFY_DIRTY;
+        const double at = limit * steps[step];
+        const size_t stride = step == 0 ? far_apart : 1;
         for (int round = 0, removed = 1; round < ROUNDS && removed; round++) {
             removed = 0;
-            for (uint32_t v = 0; v < r->vertex_count; v++) {
-                if (r->state[v] != SIMPLIFY_DIRTY || r->head[v] == SWARF_NO_VERTEX) continue;
+            for (size_t i = 0, v = 0; i < r->vertex_count; i++, v = (v + stride) % r->vertex_count) {
+                if (r->state[v] != SIMPLIFY_DIRTY && (r->state[v] || !((double)r->need[v] <= at))) continue;
+                if (r->head[v] == SWARF_NO_VERTEX) continue;
                 r->state[v] = 0;
-                removed |= remove_vertex(r, v, limit * steps[step]);
+                removed |= remove_vertex(r, (uint32_t)v, at);
             }
         }
     }
