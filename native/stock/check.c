@@ -9,6 +9,7 @@
 #include "base/status.h"
 #include "stock/cut.h"
 #include "stock/load.h"
+#include "stock/measure.h"
 #include "stock/mesh.h"
 #include "stock/simulate.h"
 
@@ -49,7 +50,8 @@ struct test {
     swarf_part_kind part;
     const swarf_body *body;
     swarf_stock *target;
-    double depth; /* mm from which on it counts */
+    const swarf_box *reach; /* of the target */
+    double depth;           /* mm from which on it counts */
     int rapids, feeds;
 };
 
@@ -57,7 +59,8 @@ enum { MOST_TESTS = 6 + 4 * MOST_TARGETS };
 
 struct player {
     swarf_stock *stock;
-    swarf_stock *targets[MOST_TARGETS]; /* the fixtures, then the design if there is one */
+    swarf_stock *targets[MOST_TARGETS];     /* the fixtures, then the design if there is one */
+    swarf_box reach, reaches[MOST_TARGETS]; /* no material of stock and targets beyond; the stock only shrinks */
     size_t target_count;
     const swarf_program *program;
     const swarf_tool *tools;
@@ -349,19 +352,26 @@ static size_t make_tests(const struct player *p, const struct tool *tool, struct
 {
     const double voxel = swarf_stock_voxel(p->stock), own = stock_depth * voxel, other = solid_depth * voxel;
     size_t count = 0;
-    tests[count++] = (struct test){SWARF_CHECK_RAPID, SWARF_PART_FLUTES, tool->flutes, p->stock, own, 1, 0};
-    tests[count++] = (struct test){SWARF_CHECK_SHANK, SWARF_PART_SHANK, tool->shank, p->stock, own, 1, 1};
-    tests[count++] = (struct test){SWARF_CHECK_HOLDER, SWARF_PART_HOLDER, tool->holder, p->stock, own, 1, 1};
-    tests[count++] = (struct test){SWARF_CHECK_NEAR, SWARF_PART_HOLDER, tool->wide_holder, p->stock, own, 1, 1};
-    tests[count++] = (struct test){SWARF_CHECK_DEPTH, SWARF_PART_SHANK, tool->above, p->stock, own, 1, 1};
+    tests[count++] = (struct test){SWARF_CHECK_RAPID, SWARF_PART_FLUTES, tool->flutes, p->stock, &p->reach, own, 1, 0};
+    tests[count++] = (struct test){SWARF_CHECK_SHANK, SWARF_PART_SHANK, tool->shank, p->stock, &p->reach, own, 1, 1};
+    tests[count++] = (struct test){SWARF_CHECK_HOLDER, SWARF_PART_HOLDER, tool->holder, p->stock, &p->reach, own, 1, 1};
+    tests[count++] =
+        (struct test){SWARF_CHECK_NEAR, SWARF_PART_HOLDER, tool->wide_holder, p->stock, &p->reach, own, 1, 1};
+    tests[count++] = (struct test){SWARF_CHECK_DEPTH, SWARF_PART_SHANK, tool->above, p->stock, &p->reach, own, 1, 1};
     for (size_t i = 0; i < p->target_count; i++) {
         const int is_design = i >= p->options->fixture_count;
         const swarf_check_kind kind = is_design ? SWARF_CHECK_DESIGN : SWARF_CHECK_FIXTURE;
-        tests[count++] = (struct test){
-            kind, SWARF_PART_FLUTES, tool->flutes, p->targets[i], other + (is_design ? p->options->design_mm : 0), 1,
-            1};
-        tests[count++] = (struct test){kind, SWARF_PART_SHANK, tool->shank, p->targets[i], other, 1, 1};
-        tests[count++] = (struct test){kind, SWARF_PART_HOLDER, tool->holder, p->targets[i], other, 1, 1};
+        tests[count++] = (struct test){kind,
+                                       SWARF_PART_FLUTES,
+                                       tool->flutes,
+                                       p->targets[i],
+                                       &p->reaches[i],
+                                       other + (is_design ? p->options->design_mm : 0),
+                                       1,
+                                       1};
+        tests[count++] = (struct test){kind, SWARF_PART_SHANK, tool->shank, p->targets[i], &p->reaches[i], other, 1, 1};
+        tests[count++] =
+            (struct test){kind, SWARF_PART_HOLDER, tool->holder, p->targets[i], &p->reaches[i], other, 1, 1};
     }
     size_t kept = 0;
     for (size_t i = 0; i < count; i++)
@@ -384,6 +394,44 @@ static swarf_status take_paths(struct player *p, size_t first, size_t end, int r
         p->numbers[(*count)++] = i;
     }
     return SWARF_OK;
+}
+
+static void include_point(swarf_box *box, const double point[3], double radius)
+{
+    for (int k = 0; k < 3; k++) {
+        box->lo[k] = fmin(box->lo[k], point[k] - radius);
+        box->hi[k] = fmax(box->hi[k], point[k] + radius);
+    }
+}
+
+/* A box around paths: of the tool's tip. */
+static swarf_box paths_box(const swarf_path *paths, size_t count)
+{
+    swarf_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < count; i++) {
+        const swarf_path *path = &paths[i];
+        double square = 0;
+        include_point(&box, path->start, 0);
+        include_point(&box, path->end, 0);
+        for (int k = 0; k < 3 && path->is_arc; k++) {
+            const double a = path->start[k] - path->arc.centre[k], b = path->end[k] - path->arc.centre[k];
+            square += fmax(a * a, b * b);
+        }
+        if (path->is_arc) include_point(&box, path->arc.centre, sqrt(square));
+    }
+    return box;
+}
+
+/* Whether a body along paths in a box is clear of a target. */
+static int is_clear(const struct test *test, const swarf_box *tips)
+{
+    const swarf_body *body = test->body;
+    for (int k = 0; k < 3; k++) {
+        const double below = k == 2 ? body->exact_lo : -body->exact_radius;
+        const double above = k == 2 ? body->exact_hi : body->exact_radius;
+        if (tips->lo[k] + below > test->reach->hi[k] || tips->hi[k] + above < test->reach->lo[k]) return 1;
+    }
+    return 0;
 }
 
 static swarf_status cut(struct player *p, const struct tool *tool, size_t first, size_t end)
@@ -409,11 +457,18 @@ static swarf_status play_range(struct player *p, const struct tool *tool, size_t
     if (!open) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
     size_t open_count = 0, count = 0;
     swarf_status status = SWARF_OK;
+    swarf_box tips = paths_box(NULL, 0);
+    int taken = -1; /* whether the paths are those of feeds, too */
     for (size_t i = 0; i < test_count && status == SWARF_OK; i++) {
         double depth = 0, point[3];
         if (p->found[tests[i].kind] >= MOST_FINDINGS) continue;
-        status = take_paths(p, first, end, tests[i].rapids, tests[i].feeds, &count);
-        if (status == SWARF_OK && count)
+        if (tests[i].feeds != taken) {
+            status = take_paths(p, first, end, tests[i].rapids, tests[i].feeds, &count);
+            if (status != SWARF_OK) break;
+            taken = tests[i].feeds;
+            tips = paths_box(p->paths, count);
+        }
+        if (count && !is_clear(&tests[i], &tips))
             status = swarf_cut_touch(tests[i].target, tests[i].body, p->paths, count, tests[i].depth, &depth, point);
         if (depth > tests[i].depth) open[open_count++] = tests[i];
     }
@@ -488,6 +543,7 @@ static swarf_status make_targets(struct player *p)
         SWARF_TRY(swarf_stock_create_solid(solid, &options, p->progress, 0, 0, &p->targets[i]));
         p->target_count++;
         SWARF_TRY(swarf_stock_enter_write(p->targets[i]));
+        p->reaches[i] = swarf_measure_reach(p->targets[i]);
     }
     return SWARF_OK;
 }
@@ -497,6 +553,7 @@ static swarf_status run(struct player *p)
     p->prepared = calloc(p->tool_count + 1, sizeof *p->prepared);
     p->result = calloc(1, sizeof *p->result);
     if (!p->prepared || !p->result) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
+    p->reach = swarf_measure_reach(p->stock);
     SWARF_TRY(make_targets(p));
     if (p->options->loads) SWARF_TRY(swarf_loads_create(p->count, &p->result->loads));
     const swarf_watch watch = {play_batch, p};

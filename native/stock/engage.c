@@ -8,7 +8,7 @@
 #include "stock/engage.h"
 
 #include "base/status.h"
-#include "stock/measure.h"
+#include "stock/probe.h"
 #include "sweep/distance.h"
 
 #include <math.h>
@@ -109,13 +109,19 @@ void swarf_meridian_destroy(swarf_meridian *meridian)
 
 /* ---- one moment ---- */
 
+struct fan {
+    double half, cosine[RING_ANGLES], sine[RING_ANGLES];
+};
+
 struct moment {
     const swarf_meridian *meridian;
     const swarf_material *material;
-    const double *tip;
+    swarf_probe probe;
+    double tip[3]; /* voxels of the layout */
+    struct fan fans[2];
     double level, up;        /* parts of the motion */
     double ahead_x, ahead_y; /* its level direction */
-    double voxel, origin[3];
+    double voxel;
     swarf_status status;
     swarf_engagement found;
     double reach[4]; /* least and greatest across, least and greatest ahead */
@@ -144,27 +150,72 @@ static struct ring ring_at(const struct moment *m, const swarf_meridian_piece *p
     return ring;
 }
 
-/* How many voxels deep in material the ring is at an angle from the motion, counter-clockwise. */
-static double depth_at(struct moment *m, const struct ring *ring, double angle)
+/* Whether what the tracks of the material have cut is far from a point (1; farther than `deep`), covers it (-1), or is
+ * near (0), as far as the enclosing cylinder of the body and a large one inside it tell. */
+static int tracks_at(const swarf_material *material, const double at[3])
+{
+    const swarf_body *body = material->body;
+    const double slack = 0.01; /* of floats */
+    const double outer = (double)body->radius + deep + slack, inner = (double)body->core_radius - slack;
+    int far = 1;
+    for (size_t i = 0; i < material->track_count; i++) {
+        const swarf_track *track = &material->tracks[i];
+        const double x = at[0] - track->point[0], y = at[1] - track->point[1], z = at[2] - track->point[2];
+        if (z < (double)body->z_lo - deep - slack) continue;
+        if (track->is_arc) {
+            const double plan = fabs(hypot(at[0] - track->centre[0], at[1] - track->centre[1]) - track->radius);
+            if (plan < outer) far = 0;
+            continue;
+        }
+        const double t = x * track->ux + y * track->uy, s = t < 0 ? 0 : t > track->run ? track->run : t;
+        const double dx = x - s * track->ux, dy = y - s * track->uy;
+        const double square = dx * dx + dy * dy;
+        if (square >= outer * outer) continue;
+        if (track->rise == 0 && inner > 0 && square < inner * inner && z > (double)body->core_lo + slack &&
+            z < (double)body->core_hi - slack)
+            return -1;
+        far = 0;
+    }
+    return far;
+}
+
+/* How many voxels deep in material the ring is at the angle of a cosine and sine from the motion. */
+static double depth_towards(struct moment *m, const struct ring *ring, double c, double s)
 {
     const swarf_material *material = m->material;
-    const double c = cos(angle), s = sin(angle);
-    const double point[3] = {m->tip[0] + ring->r * (c * m->ahead_x - s * m->ahead_y),
-                             m->tip[1] + ring->r * (c * m->ahead_y + s * m->ahead_x), m->tip[2] + ring->z};
-    double at[3];
-    int32_t nearest[3];
-    for (int k = 0; k < 3; k++) {
-        at[k] = (point[k] - m->origin[k]) / m->voxel;
-        if (!(fabs(at[k]) < 1e9)) return -SWARF_HALF_WIDTH;
-        nearest[k] = (int32_t)lrint(at[k]);
-    }
-    double depth = -swarf_stock_value(material->stock, nearest) / m->voxel;
+    const double r = ring->r * m->probe.scale;
+    const double at[3] = {m->tip[0] + r * (c * m->ahead_x - s * m->ahead_y),
+                          m->tip[1] + r * (c * m->ahead_y + s * m->ahead_x), m->tip[2] + ring->z * m->probe.scale};
+    const int32_t nearest[3] = {(int32_t)lrint(at[0]), (int32_t)lrint(at[1]), (int32_t)lrint(at[2])};
+    double depth = -swarf_probe_voxel(&m->probe, nearest) * m->probe.scale;
     if (depth < -2) return depth;
-    if (depth < 2) depth = -swarf_measure_sample(material->stock, point) / m->voxel;
+    if (depth < 2) depth = -swarf_probe_point(&m->probe, at) * m->probe.scale;
     if (depth <= edge || material->track_count == 0 || m->status != SWARF_OK) return depth;
+    const int known = tracks_at(material, at);
+    if (known) return known > 0 ? depth : -1;
     float away = 0;
     m->status = swarf_distance_at(material->body, material->tracks, material->track_count, at, material->column, &away);
     return fmin(depth, away);
+}
+
+static double depth_at(struct moment *m, const struct ring *ring, double angle)
+{
+    return depth_towards(m, ring, cos(angle), sin(angle));
+}
+
+/* Cosines and sines of `count` angles evenly across the half turn of a ring. The last ones are kept: most rings face
+ * the motion by a half turn. */
+static const struct fan *fan_of(struct moment *m, double half, int count)
+{
+    struct fan *fan = &m->fans[count == RING_ANGLES];
+    if (fan->half == half) return fan;
+    fan->half = half;
+    for (int k = 0; k < count; k++) {
+        const double angle = half * (2 * (k + 0.5) / count - 1);
+        fan->cosine[k] = cos(angle);
+        fan->sine[k] = sin(angle);
+    }
+    return fan;
 }
 
 /* Where between `in`, which lies in material, and `out`, which does not, the ring leaves it. */
@@ -191,12 +242,11 @@ static double facing(const struct ring *ring, double angle)
     return ring->front * cos(angle) + ring->rise;
 }
 
-/* Whether material seen there is cut. At its sides a tool rubs along the walls it has made, and where they are nearer
- * than `deep` what shows is none. */
-static int cuts(const struct moment *m, const struct ring *ring, double angle)
+/* Material is cut at angles of greater cosines. At its sides a tool rubs along the walls it has made, and where they
+ * are nearer than `deep` what shows is none. */
+static double least_cosine(const struct moment *m, const struct ring *ring)
 {
-    const double side = fmin(0.5, sqrt(2 * deep * m->voxel / fmax(ring->r, 1e-9)));
-    return ring->rise > 0 || cos(angle) > side;
+    return ring->rise > 0 ? -2 : fmin(0.5, sqrt(2 * deep * m->voxel / fmax(ring->r, 1e-9)));
 }
 
 static double scan_angle(const struct ring *ring, int k)
@@ -211,9 +261,7 @@ static double cell_middle(const swarf_meridian_piece *piece, int cell)
 }
 
 /* The same along the meridian: the farthest, upwards or downwards (`step` 1, -1), of what a cell has in material at the
- * angles `in`. Layers too thin to be seen by themselves go with it. Angles at which the surface faces the motion by
- * less than half of what others do are left out: there walls are near, and the field is not exact beside their edges.
- */
+ * angles `in`. Layers too thin to be seen by themselves go with it. */
 static double piece_end(struct moment *m, const swarf_meridian_piece *piece, int cell, uint32_t in, int step)
 {
     const struct ring ring = ring_at(m, piece, cell_middle(piece, cell));
@@ -244,26 +292,27 @@ static double piece_end(struct moment *m, const swarf_meridian_piece *piece, int
     return best;
 }
 
+/* The angles at which the middle of a cell is deep in material, one bit each. */
+static uint32_t scan_cell(struct moment *m, const swarf_meridian_piece *piece, int cell)
+{
+    const struct ring ring = ring_at(m, piece, cell_middle(piece, cell));
+    uint32_t in = 0;
+    if (ring.half == 0) return 0;
+    const struct fan *fan = fan_of(m, ring.half, SCAN_ANGLES);
+    const double least = least_cosine(m, &ring);
+    for (int k = 0; k < SCAN_ANGLES; k++)
+        if (fan->cosine[k] > least && depth_towards(m, &ring, fan->cosine[k], fan->sine[k]) > deep) in |= 1u << k;
+    return in;
+}
+
 /* The first and last point of a piece that lie in material; 0 when none does. */
 static int piece_range(struct moment *m, const swarf_meridian_piece *piece, double range[2])
 {
-    int lowest = -1, highest = -1;
+    int lowest = 0, highest = piece->cells - 1;
     uint32_t at_lowest = 0, at_highest = 0;
-    for (int i = 0; i < piece->cells; i++) {
-        const struct ring ring = ring_at(m, piece, 0.5 * (piece->edge[i] + piece->edge[i + 1]));
-        uint32_t in = 0;
-        for (int k = 0; k < SCAN_ANGLES && ring.half > 0; k++)
-            in |= (uint32_t)(cuts(m, &ring, scan_angle(&ring, k)) && depth_at(m, &ring, scan_angle(&ring, k)) > deep)
-                  << k;
-        if (!in) continue;
-        if (lowest < 0) {
-            lowest = i;
-            at_lowest = in;
-        }
-        highest = i;
-        at_highest = in;
-    }
-    if (lowest < 0) return 0;
+    while (lowest < piece->cells && !(at_lowest = scan_cell(m, piece, lowest))) lowest++;
+    if (lowest == piece->cells) return 0;
+    while (!(at_highest = highest == lowest ? at_lowest : scan_cell(m, piece, highest))) highest--;
     range[0] = piece_end(m, piece, lowest, at_lowest, -1);
     range[1] = piece_end(m, piece, highest, at_highest, 1);
     return 1;
@@ -310,12 +359,13 @@ static int find_runs(struct moment *m, const struct ring *rings, int ring_count,
         const double half = rings[i].half, step = 2 * half / RING_ANGLES;
         double depth[RING_ANGLES];
         if (half == 0) continue;
-        for (int k = 0; k < RING_ANGLES; k++) depth[k] = depth_at(m, &rings[i], -half + (k + 0.5) * step);
+        const struct fan *fan = fan_of(m, half, RING_ANGLES);
+        const double least = least_cosine(m, &rings[i]);
+        for (int k = 0; k < RING_ANGLES; k++) depth[k] = depth_towards(m, &rings[i], fan->cosine[k], fan->sine[k]);
         for (int k = 0; k < RING_ANGLES; k++) {
             if (depth[k] <= edge) continue;
             struct run run = {.ring = i, .first = k};
-            for (; k < RING_ANGLES && depth[k] > edge; k++)
-                run.counts |= depth[k] > deep && cuts(m, &rings[i], -half + (k + 0.5) * step);
+            for (; k < RING_ANGLES && depth[k] > edge; k++) run.counts |= depth[k] > deep && fan->cosine[k] > least;
             run.last = k - 1;
             run.a = -half + (run.first + 0.5) * step;
             run.b = -half + (run.last + 0.5) * step;
@@ -378,18 +428,23 @@ static void follow_piece(struct moment *m, const swarf_meridian_piece *piece)
 swarf_status swarf_engage(const swarf_meridian *meridian, const swarf_material *material, const double tip[3],
                           const double along[3], swarf_engagement *out)
 {
-    const swarf_tree_layout *layout = swarf_tree_get_layout(material->stock->tree);
     struct moment m = {.meridian = meridian,
                        .material = material,
-                       .tip = tip,
+                       .probe = swarf_probe_begin(material->stock),
                        .level = hypot(along[0], along[1]),
                        .up = along[2],
                        .ahead_x = 1,
-                       .voxel = layout->voxel,
                        .reach = {INFINITY, -INFINITY, INFINITY, -INFINITY},
                        .z_lo = INFINITY,
                        .z_hi = -INFINITY};
-    memcpy(m.origin, layout->origin, sizeof m.origin);
+    m.voxel = m.probe.layout->voxel;
+    for (int k = 0; k < 3; k++) {
+        m.tip[k] = (tip[k] - m.probe.layout->origin[k]) / m.voxel;
+        if (!(fabs(m.tip[k]) < 1e8)) { /* no stock reaches there, nor do its numbers */
+            *out = m.found;
+            return SWARF_OK;
+        }
+    }
     if (m.level > 1e-9) {
         m.ahead_x = along[0] / m.level;
         m.ahead_y = along[1] / m.level;

@@ -17,7 +17,7 @@
 #include <string.h>
 
 /* Moments are this many voxels, or this share of the tool's radius, apart; the longer of both. */
-static const double moment_voxels = 2, moment_share = 0.125;
+static const double moment_voxels = 2, moment_share = 0.25;
 /* What was cut less than this many voxels of way before a moment is not held against it: the walls it left lie so close
  * before the flutes that no depth of material is seen between. */
 static const double behind_voxels = 1;

@@ -130,6 +130,32 @@ swarf_status swarf_stock_box(swarf_stock *stock, swarf_box *out)
     return status;
 }
 
+swarf_box swarf_measure_reach(const swarf_stock *stock)
+{
+    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
+    const size_t nodes = swarf_layout_nodes(layout);
+    swarf_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t node = 0; node < nodes; node++) {
+        int32_t origin[3], corner[3];
+        swarf_node_corner(layout, node, origin);
+        for (unsigned word = 0; word < SWARF_NODE_WORDS; word++) {
+            uint64_t left = layout->occupied[node * SWARF_NODE_WORDS + word];
+            for (; left; left &= left - 1) {
+                swarf_leaf_corner(origin, word * 64 + (unsigned)__builtin_ctzll(left), corner);
+                for (int k = 0; k < 3; k++) {
+                    box.lo[k] = fmin(box.lo[k], corner[k] - 1);
+                    box.hi[k] = fmax(box.hi[k], corner[k] + SWARF_LEAF_DIM);
+                }
+            }
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        box.lo[k] = layout->origin[k] + box.lo[k] * layout->voxel;
+        box.hi[k] = layout->origin[k] + box.hi[k] * layout->voxel;
+    }
+    return box;
+}
+
 /* Multiply and fold: every bit of the input reaches every bit of the state. */
 static uint64_t mix(uint64_t state, uint64_t value)
 {
@@ -231,9 +257,8 @@ float swarf_stock_value(const swarf_stock *stock, const int32_t ijk[3])
     return inside ? -layout->background : layout->background;
 }
 
-float swarf_measure_sample(const swarf_stock *stock, const double point[3])
+static float sample(const swarf_stock *stock, const swarf_tree_layout *layout, const double point[3])
 {
-    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     int32_t corner[3];
     float part[3];
     for (int k = 0; k < 3; k++) {
@@ -264,9 +289,10 @@ struct sampling {
 static swarf_status sample_chunk(void *context, size_t index)
 {
     const struct sampling *work = context;
+    const swarf_tree_layout *layout = swarf_tree_get_layout(work->stock->tree);
     const size_t first = index * SAMPLES_AT_ONCE;
     const size_t last = first + SAMPLES_AT_ONCE < work->count ? first + SAMPLES_AT_ONCE : work->count;
-    for (size_t i = first; i < last; i++) work->out[i] = swarf_measure_sample(work->stock, work->points + 3 * i);
+    for (size_t i = first; i < last; i++) work->out[i] = sample(work->stock, layout, work->points + 3 * i);
     return SWARF_OK;
 }
 

@@ -11,7 +11,8 @@
  * overcounted by up to h^2 / 4 per mm of it, h^2 / 13 on average; concave edges are undercounted as much. */
 swarf_status swarf_measure_volume(const swarf_stock *stock, double *out);
 
-/** Trilinear sample in mm at a point (mm) of a stock whose faces all have leaves; beyond the band three voxels. */
-float swarf_measure_sample(const swarf_stock *stock, const double point[3]);
+/** Box in mm of all leaves and tiles that may hold material or band: at once, up to a leaf too large; empty (lo > hi)
+ *  where there are none. The stock has been entered. */
+swarf_box swarf_measure_reach(const swarf_stock *stock);
 
 #endif

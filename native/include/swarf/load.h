@@ -11,7 +11,7 @@
  * by bisection, to a hundredth of a voxel and as well as the stock is known there (faces: a hundredth of a voxel,
  * beside edges up to half of one). Not seen are layers thinner than 0.35 voxel, parts narrower than a sixty-fourth of
  * the turn, and layers between samples along the axis (a voxel apart at the tip, a twenty-fourth of the flutes' length
- * farther up). Moments are two voxels or an eighth of the tool's radius apart; moves shorter than that share them.
+ * farther up). Moments are two voxels or a quarter of the tool's radius apart; moves shorter than that share them.
  */
 #ifndef SWARF_LOAD_H
 #define SWARF_LOAD_H

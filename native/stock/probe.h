@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Many looks at a stock near each other, by one thread: the leaf of the last look is kept. The stock has been entered
+ * and does not change meanwhile, and all its faces have leaves. */
+#ifndef SWARF_STOCK_PROBE_H
+#define SWARF_STOCK_PROBE_H
+
+#include "stock/stock.h"
+
+#include <math.h>
+
+typedef struct swarf_probe {
+    const swarf_stock *stock;
+    const swarf_tree_layout *layout;
+    double scale;        /**< voxels per mm */
+    int32_t leaf[3];     /**< whose values these are, in leaves */
+    const float *values; /**< mm; NULL: a tile, or outside the layout */
+    float everywhere;    /**< then this */
+} swarf_probe;
+
+static inline swarf_probe swarf_probe_begin(const swarf_stock *stock)
+{
+    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
+    return (swarf_probe){.stock = stock,
+                         .layout = layout,
+                         .scale = 1 / layout->voxel,
+                         .leaf = {-1, -1, -1},
+                         .everywhere = layout->background};
+}
+
+static inline void swarf_probe_enter(swarf_probe *probe, const int32_t leaf[3])
+{
+    const swarf_tree_layout *layout = probe->layout;
+    int outside = 0;
+    for (int k = 0; k < 3; k++) {
+        probe->leaf[k] = leaf[k];
+        outside |= leaf[k] < 0 || leaf[k] >= layout->count[k] * (SWARF_NODE_DIM / SWARF_LEAF_DIM);
+    }
+    probe->values = NULL;
+    probe->everywhere = layout->background;
+    if (outside) return;
+    const size_t node =
+        ((size_t)(leaf[0] >> 4) * (size_t)layout->count[1] + (size_t)(leaf[1] >> 4)) * (size_t)layout->count[2] +
+        (size_t)(leaf[2] >> 4);
+    const unsigned slot = (unsigned)(leaf[0] & 15) << 8 | (unsigned)(leaf[1] & 15) << 4 | (unsigned)(leaf[2] & 15);
+    if (!(layout->occupied[node * SWARF_NODE_WORDS + (slot >> 6)] >> (slot & 63) & 1)) return;
+    probe->values = swarf_tree_leaf(probe->stock->tree, node, slot);
+    probe->everywhere = -layout->background;
+}
+
+/** Value of a voxel of the layout, mm. */
+static inline float swarf_probe_voxel(swarf_probe *probe, const int32_t ijk[3])
+{
+    const int32_t leaf[3] = {ijk[0] >> 3, ijk[1] >> 3, ijk[2] >> 3};
+    if (leaf[0] != probe->leaf[0] || leaf[1] != probe->leaf[1] || leaf[2] != probe->leaf[2])
+        swarf_probe_enter(probe, leaf);
+    return probe->values ? probe->values[(ijk[0] & 7) * 64 + (ijk[1] & 7) * 8 + (ijk[2] & 7)] : probe->everywhere;
+}
+
+/** Trilinear value (mm) at a point in voxels of the layout. */
+static inline float swarf_probe_point(swarf_probe *probe, const double at[3])
+{
+    int32_t corner[3];
+    float part[3], value[8];
+    for (int k = 0; k < 3; k++) {
+        corner[k] = (int32_t)floor(at[k]);
+        part[k] = (float)(at[k] - corner[k]);
+    }
+    for (int i = 0; i < 8; i++) {
+        const int32_t ijk[3] = {corner[0] + (i >> 2), corner[1] + (i >> 1 & 1), corner[2] + (i & 1)};
+        value[i] = swarf_probe_voxel(probe, ijk);
+    }
+    for (int i = 0; i < 4; i++) value[i] += part[0] * (value[i + 4] - value[i]);
+    for (int i = 0; i < 2; i++) value[i] += part[1] * (value[i + 2] - value[i]);
+    return value[0] + part[2] * (value[1] - value[0]);
+}
+
+#endif
