@@ -150,17 +150,20 @@ def operations(report: dict[str, Any]) -> str:
         total = sum(removed.values()) or 1.0
         return table(["operation", "removed, mm³", "share"],
                      [[name, f"{value:,.1f}", f"{100 * value / total:.1f} %"] for name, value in removed.items()], (1, 2))
-    heads = ["operation", "time", "removed, mm³", "climb", *(
-        f"{name}, {unit.replace('mm3', 'mm³')}" for _, unit, name in KINDS.values())]
+    entries = report["loads"]["operations"]
+    kinds = [kind for kind in KINDS if any(kind in entry["peaks"] for entry in entries)]
+    heads = ["operation", "time", Markup("removed<br>mm³"), "climb", *(
+        Markup(f"{KINDS[kind][2]}<br>{plots.units(KINDS[kind][1])}") for kind in kinds)]
     rows = []
-    for entry in report["loads"]["operations"]:
+    for entry in entries:
         peaks = [Markup(f'{plots.nice(entry["peaks"][kind]["value"])}<br><span class=dim>line '
-                        f'{entry["peaks"][kind]["line"]}</span>') if kind in entry["peaks"] else "–" for kind in KINDS]
-        climb = "–" if entry["climb"] is None else f"{100 * entry['climb']:.0f} %"
+                        f'{entry["peaks"][kind]["line"]}</span>') if kind in entry["peaks"] else "–" for kind in kinds]
+        climb = "–" if entry["climb"] is None or "engagement" not in entry["peaks"] else f"{100 * entry['climb']:.0f} %"
         rows.append([entry["operation"], plots.clock(entry["seconds"]), f"{removed[entry['operation']]:,.1f}", climb, *peaks])
+    chips = "" if "chip" in kinds else " Chip thickness is not known: no tool tells its number of teeth."
     return table(heads, rows, range(1, len(heads))) + (
-        "<p class=dim>Peaks of each operation and the line that makes them; chips where the number of teeth is known. "
-        "Climb: share of the volume that is cut in climb milling.</p>")
+        "<p class=dim>The greatest loads of each operation and the line that makes them; engagement is that of moves "
+        f"sideways. Climb: share of the volume that is cut in climb milling.{chips}</p>")
 
 
 def load_plots(done: Verification, report: dict[str, Any]) -> str:

@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import json
 import math
-import struct
 from dataclasses import dataclass, field
 from typing import Any, Iterable, Mapping, Optional, Sequence
 
 from ._native import Program
+from .records import MOVE, SECTION, section_and_kind
 
 #: Words of limits: the load (a key of Check.loads), its unit, its name in texts.
 KINDS = {
@@ -28,6 +28,10 @@ KINDS = {
 }
 
 Limits = Mapping[Optional[int], Mapping[str, float]]
+
+#: Above this many degrees a tool plunges: going sideways it has at most the half turn before it in material. Limits and
+#: peaks of engagement are about the sides of tools, and leave plunges out.
+MOST_SIDEWAYS = 180.5
 
 
 def check_limits(limits: Limits, what: str = "limits") -> None:
@@ -107,6 +111,11 @@ def read(path: str, material: Optional[str] = None) -> Limits:
     return merge(general, parts[material])
 
 
+def value_of(kind: str, value: float) -> float:
+    """What counts of a load: 0 for the engagement of a plunge."""
+    return 0.0 if kind == "engagement" and value > MOST_SIDEWAYS else value
+
+
 @dataclass
 class Peak:
     """The greatest load of one kind in an operation."""
@@ -145,14 +154,10 @@ class Excess:
         return f"{name} {self.value:.4g} {unit} exceeds the limit of {self.most:g} {unit}{others}"
 
 
-def _sections(program: Program) -> list[tuple[int, int]]:
-    return [row[:2] for row in struct.iter_unpack("=iiiidii", bytes(program.sections))]
-
-
 def _moves(program: Program) -> Iterable[tuple[int, int]]:
     """Tool and operation of each move."""
-    sections = _sections(program)
-    return (sections[row[0] >> 3] for row in struct.iter_unpack("=36xI", program.moves))
+    sections = [row[:2] for row in SECTION.iter_unpack(bytes(program.sections))]
+    return (sections[section_and_kind(row[-1])[0]] for row in MOVE.iter_unpack(program.moves))
 
 
 def summaries(program: Program, loads: Mapping[str, memoryview], times: Sequence[float]) -> list[Summary]:
@@ -171,8 +176,9 @@ def summaries(program: Program, loads: Mapping[str, memoryview], times: Sequence
         if loads["peak_rate"][move] > 0:
             summary.cutting += times[move]
         for kind, column in columns:
-            if column[move] > summary.peaks.get(kind, _NOTHING).value:
-                summary.peaks[kind] = Peak(column[move], move)
+            value = value_of(kind, column[move])
+            if value > summary.peaks.get(kind, _NOTHING).value:
+                summary.peaks[kind] = Peak(value, move)
     for summary, part in zip(result, climbed):
         summary.climb = part / summary.volume if summary.volume > 0 else None
     return result
@@ -188,7 +194,7 @@ def exceeded(program: Program, loads: Mapping[str, memoryview], limits: Limits) 
     for kind in (kind for kind in KINDS if kind in kinds):
         column = loads[KINDS[kind][0]]
         for move, (tool, operation) in enumerate(_moves(program)):
-            value = column[move]
+            value = value_of(kind, column[move])
             most = limit(limits, tool, kind) if value > 0 else None
             if most is None or value <= most:
                 continue
@@ -207,15 +213,15 @@ def course(
     total = math.fsum(times)
     made: dict[str, Any] = {"seconds": total, "operations": [], **{kind: [0.0] * bins for kind in KINDS}}
     begins: dict[int, float] = {}
-    columns = [(made[kind], loads[KINDS[kind][0]]) for kind in KINDS]
+    columns = [(kind, made[kind], loads[KINDS[kind][0]]) for kind in KINDS]
     clock = 0.0
     for move, (_, operation) in enumerate(_moves(program)):
         begins.setdefault(operation, clock)
         end = clock + times[move]
         if total > 0 and loads["angle"][move] > 0:
             first, last = int(clock / total * bins), int(math.ceil(end / total * bins))
-            for series, column in columns:
-                value = column[move]
+            for kind, series, column in columns:
+                value = value_of(kind, column[move])
                 for index in range(min(first, bins - 1), min(max(last, first + 1), bins)):
                     if value > series[index]:
                         series[index] = value

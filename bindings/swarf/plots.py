@@ -7,7 +7,7 @@ from typing import Any, Mapping, Optional, Sequence
 
 from .loads import KINDS
 
-WIDTH, LEFT, STRIP, GAP = 760.0, 96.0, 58.0, 16.0
+WIDTH, LEFT, STRIP, GAP = 760.0, 104.0, 58.0, 16.0
 INK, FILL, LIMIT = "#2f5d8a", "#b9cfe4", "#b3121d"
 
 #: Two tints in turn tell neighbouring operations apart.
@@ -20,6 +20,11 @@ def clock(seconds: float) -> str:
     minutes, rest = divmod(whole, 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
+
+
+def units(unit: str) -> str:
+    """A unit as it is printed."""
+    return unit.replace("mm3", "mm³").replace("deg", "°")
 
 
 def nice(value: float) -> str:
@@ -62,8 +67,8 @@ def course(data: Mapping[str, Any], names: Sequence[str], limits: Mapping[str, f
         most = 1.08 * max(peak, limit or 0.0)
         parts.append(f'<path d="{_strip(data[kind], y, most)}" fill="{FILL}" stroke="{INK}" stroke-width="0.7"/>')
         parts.append(f'<text x="{LEFT - 8:g}" y="{y + 12:.1f}" text-anchor="end" style="fill:#1d2329">{name}</text>'
-                     f'<text x="{LEFT - 8:g}" y="{y + 26:.1f}" text-anchor="end">most {nice(peak)}</text>'
-                     f'<text x="{LEFT - 8:g}" y="{y + 39:.1f}" text-anchor="end">{unit.replace("mm3", "mm³")}</text>')
+                     f'<text x="{LEFT - 8:g}" y="{y + 26:.1f}" text-anchor="end">most {nice(peak)} '
+                     f'{units(unit)}</text>')
         if limit is not None:
             at = y + STRIP * (1 - limit / most)
             parts.append(f'<line x1="{LEFT:g}" x2="{WIDTH:g}" y1="{at:.1f}" y2="{at:.1f}" stroke="{LIMIT}" '

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import struct
 import time
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Sequence
@@ -14,6 +13,7 @@ from ._native import Check, Cluster, Deviation, Mesh, Scene, Solid, Stock, compa
 from .accept import Acceptance
 from .job import Job
 from .loads import Limits
+from .records import MOVE, SECTION, section_and_kind
 from .simulate import Progress, Result, make_stock
 
 #: What a design file can be, by its suffix.
@@ -144,14 +144,10 @@ def verify(
     return made
 
 
-#: The records of Program.moves and Program.sections (see the stub), for struct.
-MOVE, SECTION = struct.Struct("3dfIiI"), struct.Struct("4id2i")
-
-
 def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:
     """Name of the operation (None: none) and line of a move."""
     *_, line, _, section_kind = MOVE.unpack_from(job.program.moves, move * MOVE.size)
-    index = SECTION.unpack_from(job.program.sections, (section_kind >> 3) * SECTION.size)[1]
+    index = SECTION.unpack_from(job.program.sections, section_and_kind(section_kind)[0] * SECTION.size)[1]
     names = job.program.operations
     return (names[index] if 0 <= index < len(names) else None), line
 

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/status.h"
+#include "stock/check_tool.h"
 #include "stock/cut.h"
 #include "stock/load.h"
 #include "stock/measure.h"
@@ -22,9 +23,8 @@
  * triangles, beside whose concave edges the distance to a tool runs short by up to 0.3. */
 static const double stock_depth = 0.06, solid_depth = 0.35;
 
-/* The first instant is bisected to this share of a voxel, and the tool of a cutter without shank ends this far up, mm.
- */
-static const double instant = 0.02, endless = 500;
+/* The first instant is bisected to this share of a voxel. */
+static const double instant = 0.02;
 
 /* Findings of one kind in one operation, and fixtures. */
 enum { MOST_FINDINGS = 20, MOST_TARGETS = 64 };
@@ -34,14 +34,6 @@ struct swarf_check {
     size_t count, room;
     swarf_simulation *simulation;
     swarf_loads *loads; /* NULL: not asked for */
-};
-
-/* A part of a tool, ready to be swept; NULL where the tool has none. */
-struct tool {
-    const swarf_cutter *cutter;
-    int32_t teeth;
-    swarf_body *flutes, *shank, *holder, *wide_holder, *above; /* above: beyond the flutes, where nothing else is */
-    int ready;
 };
 
 /* What the moves of a batch are tested for. */
@@ -65,7 +57,7 @@ struct player {
     const swarf_program *program;
     const swarf_tool *tools;
     size_t tool_count;
-    struct tool *prepared; /* per tool */
+    swarf_check_tool *prepared; /* per tool */
     const swarf_check_options *options;
     const swarf_progress *progress;
     swarf_check *result;
@@ -125,80 +117,14 @@ const swarf_check_finding *swarf_check_findings(const swarf_check *check, size_t
 
 /* ---- tools ---- */
 
-/* A cutter of one holder: this cutter's, wider and lower by the clearance. */
-static swarf_status make_wide(const swarf_cutter *cutter, double clearance, swarf_cutter **out)
-{
-    swarf_cutter_part part = {.nodes = NULL};
-    double low, high;
-    swarf_cutter_extent(cutter, SWARF_PART_HOLDER, &low, &high);
-    for (size_t i = 0; i < swarf_cutter_part_count(cutter) && !part.nodes; i++) {
-        SWARF_TRY(swarf_cutter_part_get(cutter, i, &part));
-        if (part.kind != SWARF_PART_HOLDER) part.nodes = NULL;
-    }
-    if (!part.nodes) return SWARF_OK;
-    swarf_profile_node *nodes = malloc(part.node_count * sizeof *nodes);
-    if (!nodes) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
-    for (size_t i = 0; i < part.node_count; i++) {
-        nodes[i] = part.nodes[i];
-        if (nodes[i].r > 0) nodes[i].r += clearance;
-        if (nodes[i].z <= low) nodes[i].z -= clearance;
-    }
-    part.nodes = nodes;
-    const swarf_status status = swarf_cutter_create(&part, 1, out);
-    free(nodes);
-    return status;
-}
-
-/* A cylinder as wide as the flutes from their upper end on. */
-static swarf_status make_above(const swarf_cutter *cutter, swarf_cutter **out)
-{
-    double low, high;
-    swarf_cutter_extent(cutter, SWARF_PART_FLUTES, &low, &high);
-    const double radius = swarf_cutter_radius(cutter, SWARF_PART_FLUTES);
-    const swarf_profile_node nodes[4] = {
-        {0, high, 0}, {radius, high, 0}, {radius, high + endless, 0}, {0, high + endless, 0}};
-    const swarf_cutter_part part = {SWARF_PART_SHANK, nodes, 4};
-    return swarf_cutter_create(&part, 1, out);
-}
-
-static swarf_status prepare(const struct player *p, const swarf_tool *entry, struct tool *tool)
-{
-    const double voxel = swarf_stock_voxel(p->stock);
-    const swarf_cutter *cutter = entry->cutter;
-    tool->cutter = cutter;
-    tool->teeth = entry->teeth;
-    tool->ready = 1;
-    SWARF_TRY(swarf_body_create(cutter, SWARF_PART_FLUTES, voxel, &tool->flutes));
-    SWARF_TRY(swarf_body_create(cutter, SWARF_PART_SHANK, voxel, &tool->shank));
-    SWARF_TRY(swarf_body_create(cutter, SWARF_PART_HOLDER, voxel, &tool->holder));
-    swarf_cutter *made = NULL;
-    swarf_status status = SWARF_OK;
-    if (tool->holder->component_count && p->options->clearance_mm > 0) {
-        SWARF_TRY(make_wide(cutter, p->options->clearance_mm, &made));
-        if (made) status = swarf_body_create(made, SWARF_PART_HOLDER, voxel, &tool->wide_holder);
-    } else if (tool->flutes->component_count && !tool->shank->component_count && !tool->holder->component_count) {
-        SWARF_TRY(make_above(cutter, &made));
-        status = swarf_body_create(made, SWARF_PART_SHANK, voxel, &tool->above);
-    }
-    swarf_cutter_release(made);
-    return status;
-}
-
-static void free_tool(struct tool *tool)
-{
-    swarf_body_destroy(tool->flutes);
-    swarf_body_destroy(tool->shank);
-    swarf_body_destroy(tool->holder);
-    swarf_body_destroy(tool->wide_holder);
-    swarf_body_destroy(tool->above);
-}
-
-static swarf_status find_tool(struct player *p, int32_t number, struct tool **out)
+static swarf_status find_tool(struct player *p, int32_t number, swarf_check_tool **out)
 {
     *out = NULL;
     for (size_t i = 0; i < p->tool_count; i++) {
         if (p->tools[i].number != number || !p->tools[i].cutter) continue;
-        if (!p->prepared[i].ready) SWARF_TRY(prepare(p, &p->tools[i], &p->prepared[i]));
+        if (!p->prepared[i].ready)
+            SWARF_TRY(swarf_check_tool_prepare(&p->tools[i], swarf_stock_voxel(p->stock), p->options->clearance_mm,
+                                               &p->prepared[i]));
         *out = &p->prepared[i];
         return SWARF_OK;
     }
@@ -300,7 +226,7 @@ static swarf_status report_contact(struct player *p, const struct test *test, si
 
 /* ---- what the words of a move tell by themselves ---- */
 
-static swarf_status check_words(struct player *p, size_t move, const swarf_path *path, const struct tool *tool)
+static swarf_status check_words(struct player *p, size_t move, const swarf_path *path, const swarf_check_tool *tool)
 {
     const swarf_move *m = &swarf_program_moves(p->program)[move];
     const swarf_section *section = &swarf_program_sections(p->program)[swarf_move_get_section(m)];
@@ -348,7 +274,7 @@ static swarf_status check_words(struct player *p, size_t move, const swarf_path 
 
 /* ---- playing ---- */
 
-static size_t make_tests(const struct player *p, const struct tool *tool, struct test *tests)
+static size_t make_tests(const struct player *p, const swarf_check_tool *tool, struct test *tests)
 {
     const double voxel = swarf_stock_voxel(p->stock), own = stock_depth * voxel, other = solid_depth * voxel;
     size_t count = 0;
@@ -434,7 +360,7 @@ static int is_clear(const struct test *test, const swarf_box *tips)
     return 0;
 }
 
-static swarf_status cut(struct player *p, const struct tool *tool, size_t first, size_t end)
+static swarf_status cut(struct player *p, const swarf_check_tool *tool, size_t first, size_t end)
 {
     size_t count;
     SWARF_TRY(take_paths(p, first, end, 1, 1, &count));
@@ -450,7 +376,7 @@ static swarf_status cut(struct player *p, const struct tool *tool, size_t first,
 }
 
 /* Moves first .. end - 1, of which only these tests may answer yes. */
-static swarf_status play_range(struct player *p, const struct tool *tool, size_t first, size_t end,
+static swarf_status play_range(struct player *p, const swarf_check_tool *tool, size_t first, size_t end,
                                const struct test *tests, size_t test_count)
 {
     struct test *open = malloc((test_count + 1) * sizeof *open);
@@ -493,7 +419,7 @@ static swarf_status play_batch(void *context, size_t first, size_t end, double f
     struct player *p = context;
     const swarf_section *section =
         &swarf_program_sections(p->program)[swarf_move_get_section(&swarf_program_moves(p->program)[first])];
-    struct tool *tool;
+    swarf_check_tool *tool;
     p->from = from;
     p->to = to;
     p->batch_first = first;
@@ -593,7 +519,7 @@ swarf_status swarf_stock_check(swarf_stock *stock, const swarf_program *program,
                        .count = count};
     SWARF_TRY(swarf_stock_enter_write(stock));
     const swarf_status status = run(&p);
-    for (size_t i = 0; p.prepared && i < tool_count; i++) free_tool(&p.prepared[i]);
+    for (size_t i = 0; p.prepared && i < tool_count; i++) swarf_check_tool_free(&p.prepared[i]);
     for (size_t i = 0; i < MOST_TARGETS; i++) swarf_stock_destroy(p.targets[i]);
     free(p.prepared);
     free(p.paths);

@@ -60,7 +60,6 @@ def test_limits_make_warnings():
     texts = [(found.kind, found.severity, found.operation, found.text) for found in done.findings]
     assert [entry[:3] for entry in texts] == [("load", "warning", "face")] * 2
     assert "engagement 89" in texts[1][3] + texts[0][3] and "exceeds the limit of 80 deg" in texts[1][3] + texts[0][3]
-    # the plunges turn in material all around, and beside the block they do not
     worst = [found for found in done.findings if found.text.startswith("engagement")][0]
     assert worst.amount > 80 and worst.line > 0 and worst.place is not None
     assert not swarf.verify(job, DESIGN, voxel=0.5, limits={1: {"engagement": 400}}).findings
