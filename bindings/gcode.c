@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 static const char *const dialect_names[] = {"linuxcnc", "grbl", "mach3", "fanuc"};
+static const char *const unit_names[] = {"mm", "inch"};
 static const char *const note_names[] = {"error", "warning", "message"};
 
 /** One reading, with what it owns. */
@@ -14,8 +15,29 @@ typedef struct reading {
     swarf_gcode_options options;
     PyObject *path, *tool_path, *parameters;
     swarf_gcode_tool *tools;
+    swarf_gcode_diameter *diameters;
     native_call call;
 } reading;
+
+/** The keywords that all three share, as they are given. */
+typedef struct keywords {
+    PyObject *start, *tools, *diameters, *parameters, *progress;
+    const char *dialect, *unit, *search;
+    int block_delete;
+    Py_ssize_t line_limit;
+} keywords;
+
+#define KEYWORD_NAMES                                                                                                  \
+    "start", "dialect", "tools", "diameters", "parameters", "machine_unit", "search", "block_delete", "line_limit",    \
+        "progress", NULL
+#define KEYWORD_FORMAT "OsOOOszpnO"
+#define KEYWORD_PLACES(k)                                                                                              \
+    &(k).start, &(k).dialect, &(k).tools, &(k).diameters, &(k).parameters, &(k).unit, &(k).search, &(k).block_delete,  \
+        &(k).line_limit, &(k).progress
+#define KEYWORD_DEFAULTS                                                                                               \
+    {                                                                                                                  \
+        .dialect = dialect_names[0], .unit = unit_names[0]                                                             \
+    }
 
 static void reading_end(reading *r)
 {
@@ -23,6 +45,7 @@ static void reading_end(reading *r)
     Py_XDECREF(r->tool_path);
     Py_XDECREF(r->parameters);
     swarf_gcode_tools_free(r->tools);
+    free(r->diameters);
     swarf_notes_destroy(r->options.notes);
 }
 
@@ -57,38 +80,59 @@ static int is_path(PyObject *object)
     return method != NULL;
 }
 
-static int reading_tools(reading *r, PyTypeObject *type, PyObject *tools)
+static int reading_tools(reading *r, PyTypeObject *type, PyObject *tools, double unit_mm)
 {
     if (!tools || tools == Py_None) return 0;
     if (!is_path(tools)) return tools_from_rows(r, tools);
     if (!PyUnicode_FSConverter(tools, &r->tool_path)) return -1;
     const swarf_status status =
-        swarf_gcode_tools_read(PyBytes_AsString(r->tool_path), 1.0, &r->tools, &r->options.tool_count);
+        swarf_gcode_tools_read(PyBytes_AsString(r->tool_path), unit_mm, &r->tools, &r->options.tool_count);
     if (status) return error_raise(state_of_type(type), status), -1;
     r->options.tools = r->tools;
     return 0;
 }
 
-/** The keywords that all three share. */
-static int reading_options(reading *r, PyTypeObject *type, PyObject *start, const char *dialect, PyObject *tools,
-                           PyObject *parameters, const char *search, int block_delete, Py_ssize_t line_limit)
+/** {number: diameter}. */
+static int reading_diameters(reading *r, PyObject *diameters)
 {
-    if (start && start != Py_None && buffer_point(start, "start", r->options.start)) return -1;
-    const int found = choice_find("dialect", dialect, dialect_names, 4);
-    if (found < 0) return -1;
-    if (line_limit < 0) {
+    if (!diameters || diameters == Py_None) return 0;
+    PyObject *items = PyMapping_Items(diameters);
+    if (!items) return -1;
+    const Py_ssize_t count = PyList_Size(items);
+    r->diameters = calloc((size_t)count + 1, sizeof *r->diameters);
+    int failed = r->diameters == NULL;
+    if (failed) PyErr_NoMemory();
+    for (Py_ssize_t i = 0; i < count && !failed; i++)
+        failed = !PyArg_ParseTuple(PyList_GetItem(items, i), "id;diameters: a number and its diameter",
+                                   &r->diameters[i].number, &r->diameters[i].mm);
+    Py_DECREF(items);
+    r->options.diameters = r->diameters;
+    r->options.diameter_count = (size_t)count;
+    return failed ? -1 : 0;
+}
+
+static int reading_options(reading *r, PyTypeObject *type, const keywords *k)
+{
+    if (k->start && k->start != Py_None && buffer_point(k->start, "start", r->options.start)) return -1;
+    const int dialect = choice_find("dialect", k->dialect, dialect_names, 4);
+    if (dialect < 0) return -1;
+    const int unit = choice_find("machine_unit", k->unit, unit_names, 2);
+    if (unit < 0) return -1;
+    if (k->line_limit < 0) {
         PyErr_SetString(PyExc_ValueError, "line_limit: not a number of lines (0: the usual limit)");
         return -1;
     }
-    r->options.dialect = (swarf_gcode_dialect)found;
-    r->options.path = search;
-    r->options.block_delete = block_delete;
-    r->options.line_limit = (size_t)line_limit;
-    if (parameters && parameters != Py_None) {
-        if (!PyUnicode_FSConverter(parameters, &r->parameters)) return -1;
+    const double unit_mm = unit ? 25.4 : 1.0;
+    r->options.dialect = (swarf_gcode_dialect)dialect;
+    r->options.path = k->search;
+    r->options.block_delete = k->block_delete;
+    r->options.line_limit = (size_t)k->line_limit;
+    r->options.parameter_unit_mm = unit_mm;
+    if (k->parameters && k->parameters != Py_None) {
+        if (!PyUnicode_FSConverter(k->parameters, &r->parameters)) return -1;
         r->options.parameters = PyBytes_AsString(r->parameters);
     }
-    if (reading_tools(r, type, tools)) return -1;
+    if (reading_tools(r, type, k->tools, unit_mm) || reading_diameters(r, k->diameters)) return -1;
     const swarf_status status = swarf_notes_create(&r->options.notes);
     return status ? (error_raise(state_of_type(type), status), -1) : 0;
 }
@@ -124,22 +168,17 @@ static PyObject *program_with_notes(PyTypeObject *type, swarf_program *handle, c
     return result;
 }
 
-#define SHARED_NAMES "start", "dialect", "tools", "parameters", "search", "block_delete", "line_limit", "progress"
-
 /** read_gcode() and check_gcode(). */
-static PyObject *read_path(PyTypeObject *type, PyObject *args, PyObject *keywords, const char *format, int check)
+static PyObject *read_path(PyTypeObject *type, PyObject *args, PyObject *keyword_dict, const char *format, int check)
 {
-    static char *names[] = {"path", SHARED_NAMES, NULL};
+    static char *names[] = {"path", KEYWORD_NAMES};
     reading r = {.options = swarf_gcode_options_default()};
-    PyObject *start = NULL, *tools = NULL, *parameters = NULL, *progress = NULL, *result = NULL;
-    const char *dialect = dialect_names[0], *search = NULL;
-    int block_delete = 0;
-    Py_ssize_t line_limit = 0;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, format, names, PyUnicode_FSConverter, &r.path, &start, &dialect,
-                                     &tools, &parameters, &search, &block_delete, &line_limit, &progress))
+    keywords k = KEYWORD_DEFAULTS;
+    PyObject *result = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keyword_dict, format, names, PyUnicode_FSConverter, &r.path,
+                                     KEYWORD_PLACES(k)))
         return NULL;
-    if (!reading_options(&r, type, start, dialect, tools, parameters, search, block_delete, line_limit) &&
-        !call_begin(&r.call, progress)) {
+    if (!reading_options(&r, type, &k) && !call_begin(&r.call, k.progress)) {
         swarf_program *handle = NULL;
         swarf_status status = swarf_gcode_read_file(PyBytes_AsString(r.path), &r.options, &r.call.progress, &handle);
         /* an error that is among the notes is an answer */
@@ -157,31 +196,30 @@ static PyObject *read_path(PyTypeObject *type, PyObject *args, PyObject *keyword
     return result;
 }
 
-PyObject *gcode_read(PyObject *type, PyObject *args, PyObject *keywords)
+PyObject *gcode_read(PyObject *type, PyObject *args, PyObject *keyword_dict)
 {
-    return read_path((PyTypeObject *)type, args, keywords, "O&|$OsOOzpnO:read_gcode", 0);
+    return read_path((PyTypeObject *)type, args, keyword_dict, "O&|$" KEYWORD_FORMAT ":read_gcode", 0);
 }
 
-PyObject *gcode_check(PyObject *type, PyObject *args, PyObject *keywords)
+PyObject *gcode_check(PyObject *type, PyObject *args, PyObject *keyword_dict)
 {
-    return read_path((PyTypeObject *)type, args, keywords, "O&|$OsOOzpnO:check_gcode", 1);
+    return read_path((PyTypeObject *)type, args, keyword_dict, "O&|$" KEYWORD_FORMAT ":check_gcode", 1);
 }
 
-PyObject *gcode_parse(PyObject *type_object, PyObject *args, PyObject *keywords)
+PyObject *gcode_parse(PyObject *type_object, PyObject *args, PyObject *keyword_dict)
 {
-    static char *names[] = {"text", "name", SHARED_NAMES, NULL};
+    static char *names[] = {"text", "name", KEYWORD_NAMES};
     PyTypeObject *type = (PyTypeObject *)type_object;
     reading r = {.options = swarf_gcode_options_default()};
-    PyObject *start = NULL, *tools = NULL, *parameters = NULL, *progress = NULL, *result = NULL;
-    const char *text, *name = "text", *dialect = dialect_names[0], *search = NULL;
-    Py_ssize_t length, line_limit = 0;
-    int block_delete = 0;
+    keywords k = KEYWORD_DEFAULTS;
+    PyObject *result = NULL;
+    const char *text, *name = "text";
+    Py_ssize_t length;
     /* "s#": a str's own UTF-8 bytes or those of bytes; both immutable and held by the caller's argument tuple. */
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "s#|$sOsOOzpnO:parse_gcode", names, &text, &length, &name, &start,
-                                     &dialect, &tools, &parameters, &search, &block_delete, &line_limit, &progress))
+    if (!PyArg_ParseTupleAndKeywords(args, keyword_dict, "s#|$s" KEYWORD_FORMAT ":parse_gcode", names, &text, &length,
+                                     &name, KEYWORD_PLACES(k)))
         return NULL;
-    if (!reading_options(&r, type, start, dialect, tools, parameters, search, block_delete, line_limit) &&
-        !call_begin(&r.call, progress)) {
+    if (!reading_options(&r, type, &k) && !call_begin(&r.call, k.progress)) {
         swarf_program *handle = NULL;
         const swarf_status status = swarf_gcode_read(text, (size_t)length, name, &r.options, &r.call.progress, &handle);
         if (call_end(&r.call, state_of_type(type), status) == 0) {

@@ -35,6 +35,7 @@ static PyStructSequence_Field contour_fields[] = {
     {"full_triangles", "Triangles before vertices were left out."},
     {"triangles", "Triangles of the mesh."},
     {"sharp_vertices", "Vertices on edges and corners, before vertices were left out."},
+    {"exact_vertices", "On the exact surface, before vertices were left out."},
     {"parted_cells", "Cells that the surface passes more than once."},
     {"intersections_found", "Pairs of triangles that cut each other and were put right."},
     {"intersections_left", "Pairs that still do."},
@@ -47,7 +48,7 @@ PyStructSequence_Desc contour_desc = {
     .name = "swarf.Contour",
     .doc = "What Mesh.from_stock() came to.",
     .fields = contour_fields,
-    .n_in_sequence = 8,
+    .n_in_sequence = 9,
 };
 
 /** A struct sequence of `count` values, whose references it takes; NULL with an exception when one is NULL. */
@@ -203,9 +204,14 @@ PyObject *mesh_contour(PyObject *self, void *Py_UNUSED(closure))
     const mesh_object *mesh = (const mesh_object *)self;
     if (!mesh->from_stock) Py_RETURN_NONE;
     const swarf_contour_report *r = &mesh->contour;
-    PyObject *const values[] = {PyLong_FromSize_t(r->full_triangles),      PyLong_FromSize_t(r->triangles),
-                                PyLong_FromSize_t(r->sharp_vertices),      PyLong_FromSize_t(r->parted_cells),
-                                PyLong_FromSize_t(r->intersections_found), PyLong_FromSize_t(r->intersections_left),
-                                PyFloat_FromDouble(r->error_mm),           PyBool_FromLong(r->budget_met)};
+    PyObject *const values[] = {PyLong_FromSize_t(r->full_triangles),
+                                PyLong_FromSize_t(r->triangles),
+                                PyLong_FromSize_t(r->sharp_vertices),
+                                PyLong_FromSize_t(r->exact_vertices),
+                                PyLong_FromSize_t(r->parted_cells),
+                                PyLong_FromSize_t(r->intersections_found),
+                                PyLong_FromSize_t(r->intersections_left),
+                                PyFloat_FromDouble(r->error_mm),
+                                PyBool_FromLong(r->budget_met)};
     return sequence_of(state_of(self)->contour, values, sizeof values / sizeof *values);
 }

@@ -84,19 +84,27 @@ static PyObject *mesh_read(PyObject *type, PyObject *args, PyObject *keywords)
 
 static PyObject *mesh_from_stock(PyObject *type, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"stock", "error", "budget", "progress", NULL};
-    PyObject *stock, *progress = NULL;
+    static char *names[] = {"stock", "error", "budget", "surface", "moves", "progress", NULL};
+    module_state *state = state_of_type((PyTypeObject *)type);
+    PyObject *stock, *given = Py_None, *moves = Py_None, *progress = NULL;
     double error = 0;
     Py_ssize_t budget = 0;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$nO:from_stock", names,
-                                     state_of_type((PyTypeObject *)type)->stock, &stock, &error, &budget, &progress))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$nOOO:from_stock", names, state->stock, &stock, &error,
+                                     &budget, &given, &moves, &progress))
         return NULL;
+    if (given != Py_None && !PyObject_TypeCheck(given, state->surface))
+        return PyErr_Format(PyExc_TypeError, "surface: needs a Surface or None");
+    const surface_object *surface = given == Py_None ? NULL : (const surface_object *)given;
+    size_t from, count = 0;
+    if (surface && program_range(surface->program, 0, moves, &from, &count)) return NULL;
     if (budget < 0) return PyErr_Format(PyExc_ValueError, "budget: %zd is not a number of triangles", budget);
     native_call call;
     if (call_begin(&call, progress)) return NULL;
     swarf_contour_options options = swarf_contour_options_default();
     options.error_mm = error;
     options.triangle_budget = (size_t)budget;
+    options.surface = surface ? surface->handle : NULL;
+    options.moves = count;
     swarf_contour_report report;
     swarf_mesh *handle = NULL;
     const swarf_status status =
@@ -228,11 +236,13 @@ static PyMethodDef mesh_methods[] = {
     {"read", WITH_KEYWORDS(mesh_read), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
      "read($type, path)\n--\n\nMesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."},
     {"from_stock", WITH_KEYWORDS(mesh_from_stock), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "from_stock($type, stock, error=0.0, *, budget=0, progress=None)\n--\n\n"
+     "from_stock($type, stock, error=0.0, *, budget=0, surface=None, moves=None, progress=None)\n--\n\n"
      "The surface of a stock with its edges: closed, oriented outwards, no triangles that cut each other. Vertices "
      "are\n"
      "left out while the mesh stays within ``error`` mm of the full one, until at most ``budget`` triangles are left\n"
-     "(0: as few as the error allows). What it came to is in ``contour``."},
+     "(0: as few as the error allows). Vertices lie exactly on the Surface of which the stock has seen the first\n"
+     "``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. What it came to is in\n"
+     "``contour``."},
     {"write", WITH_KEYWORDS(mesh_write), METH_VARARGS | METH_KEYWORDS,
      "write($self, path, *, colors=None, progress=None)\n--\n\n"
      "Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure "

@@ -104,6 +104,7 @@ static int module_exec(PyObject *module)
                    add_type(module, &mesh_spec, &state->mesh, 0) || add_type(module, &camera_spec, &state->camera, 0) ||
                    add_type(module, &scene_spec, &state->scene, 0) ||
                    add_type(module, &picture_spec, &state->picture, 0) ||
+                   add_type(module, &surface_spec, &state->surface, 0) ||
                    add_sequence(module, &pick_desc, &state->pick) ||
                    add_sequence(module, &finding_desc, &state->finding) ||
                    add_sequence(module, &comparison_desc, &state->comparison) ||
@@ -127,6 +128,7 @@ static int module_traverse(PyObject *module, visitproc visit, void *arg)
     Py_VISIT(state->mesh);
     Py_VISIT(state->camera);
     Py_VISIT(state->scene);
+    Py_VISIT(state->surface);
     Py_VISIT(state->picture);
     Py_VISIT(state->pick);
     Py_VISIT(state->view);
@@ -157,6 +159,7 @@ static int module_clear(PyObject *module)
     Py_CLEAR(state->mesh);
     Py_CLEAR(state->camera);
     Py_CLEAR(state->scene);
+    Py_CLEAR(state->surface);
     Py_CLEAR(state->picture);
     Py_CLEAR(state->pick);
     Py_CLEAR(state->view);

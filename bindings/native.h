@@ -26,6 +26,7 @@ typedef struct module_state {
     PyTypeObject *mesh;
     PyTypeObject *camera;
     PyTypeObject *scene;
+    PyTypeObject *surface;
     PyTypeObject *picture;
     PyTypeObject *view;
     PyTypeObject *finding; /* struct sequences */
@@ -174,6 +175,14 @@ int camera_box(PyObject *box, swarf_box *out);
 extern PyType_Spec scene_spec;
 extern PyType_Spec picture_spec;
 extern PyStructSequence_Desc pick_desc;
+
+/* ---- surface.c ---- */
+
+typedef struct surface_object {
+    PyObject_HEAD swarf_surface *handle;
+    program_object *program; /* kept from growing */
+} surface_object;
+extern PyType_Spec surface_spec;
 
 /* ---- mesh.c ---- */
 

@@ -352,20 +352,23 @@ static PyObject *program_repr(PyObject *self)
 
 static PyMethodDef program_methods[] = {
     {"read_gcode", WITH_KEYWORDS(gcode_read), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "read_gcode($type, path, *, start=None, dialect='linuxcnc', tools=None, parameters=None, search=None, "
-     "block_delete=False, line_limit=0, progress=None)\n--\n\n"
+     "read_gcode($type, path, *, start=None, dialect='linuxcnc', tools=None, diameters=None, "
+     "parameters=None, machine_unit='mm', search=None, block_delete=False, line_limit=0, progress=None)\n--\n\n"
      "Program from a G-code file. `start` is where the tool stands first; `dialect` \"linuxcnc\", \"grbl\", \"mach3\"\n"
-     "or \"fanuc\"; `tools` a LinuxCNC tool table file, or (number, diameter, length) rows in mm; `parameters` a\n"
-     "LinuxCNC parameter file; `search` folders of subroutine files, ':' between them; `block_delete` leaves out\n"
-     "lines that begin with '/'; `line_limit` bounds what loops execute (0: 20 million lines). OSError, or\n"
+     "or \"fanuc\"; `tools` a LinuxCNC tool table file, or (number, diameter, length) rows in mm; `diameters` maps\n"
+     "numbers of tools to diameters in mm, for cutter compensation where no table tells; `parameters` a LinuxCNC\n"
+     "parameter file; `machine_unit` \"mm\" or \"inch\", which the lengths in the two files are in; `search` folders "
+     "of\n"
+     "subroutine files, ':' between them; `block_delete` leaves out lines that begin with '/'; `line_limit` bounds\n"
+     "what loops execute (0: 20 million lines). OSError, or\n"
      "FormatError \"file:line:column: error: 'word' ...\". Any thread."},
     {"parse_gcode", WITH_KEYWORDS(gcode_parse), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "parse_gcode($type, text, *, name='text', start=None, dialect='linuxcnc', tools=None, parameters=None, "
-     "search=None, block_delete=False, line_limit=0, progress=None)\n--\n\n"
+     "parse_gcode($type, text, *, name='text', start=None, dialect='linuxcnc', tools=None, diameters=None, "
+     "parameters=None, machine_unit='mm', search=None, block_delete=False, line_limit=0, progress=None)\n--\n\n"
      "The same from text (str or bytes); `name` stands for the file in errors."},
     {"check_gcode", WITH_KEYWORDS(gcode_check), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "check_gcode($type, path, *, start=None, dialect='linuxcnc', tools=None, parameters=None, search=None, "
-     "block_delete=False, line_limit=0, progress=None)\n--\n\n"
+     "check_gcode($type, path, *, start=None, dialect='linuxcnc', tools=None, diameters=None, "
+     "parameters=None, machine_unit='mm', search=None, block_delete=False, line_limit=0, progress=None)\n--\n\n"
      "What read_gcode() has to say of a file, as its notes: the first error, after which nothing is read, and the\n"
      "warnings and messages before it. No FormatError."},
     {"add_operation", WITH_KEYWORDS(program_add_operation), METH_VARARGS | METH_KEYWORDS,

@@ -36,6 +36,7 @@ from ._native import (
     Simulation,
     Solid,
     Stock,
+    Surface,
     compare_place,
     compare_volume,
     deviation_colours,
@@ -55,7 +56,8 @@ __version__ = version()
 
 __all__ = [
     "BusyError", "Camera", "Cancelled", "Check", "CheckFinding", "Cluster", "Comparison", "Contour", "Cutter", "Deviation",
-    "Error", "Finding", "FormatError", "GeometryError", "Job", "Mesh", "Pick", "Picture", "Program", "Result", "Scene",
-    "Shell", "Simulation", "Solid", "Stock", "Verification", "compare_place", "compare_volume", "deviation_colours",
-    "isa", "measure_deviation", "memory_peak", "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
+    "Error", "Finding", "FormatError", "GeometryError", "Job", "Mesh", "Pick", "Picture", "Program", "Result",
+    "Scene", "Shell", "Simulation", "Solid", "Stock", "Surface", "Verification", "compare_place", "compare_volume",
+    "deviation_colours", "isa", "measure_deviation", "memory_peak", "read_gcode", "set_threads", "simulate",
+    "threads", "verify", "version",
 ]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Milling simulation: the face of libswarf. Lengths in mm. Import the package swarf instead."""
 import os
-from typing import Any, Callable, Iterable, Literal, NamedTuple, Optional, Sequence, Union, final
+from typing import Any, Callable, Iterable, Literal, Mapping, NamedTuple, Optional, Sequence, Union, final
 
 from typing_extensions import Buffer
 
@@ -87,17 +87,20 @@ class Program:
         start: Optional[Point] = None,
         dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
         tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
+        diameters: Optional[Mapping[int, float]] = None,
         parameters: Optional[Path] = None,
+        machine_unit: Literal["mm", "inch"] = "mm",
         search: Optional[str] = None,
         block_delete: bool = False,
         line_limit: int = 0,
         progress: Progress = None,
     ) -> Program:
         """Program from a G-code file. ``start`` is where the tool stands first; ``tools`` a LinuxCNC tool table file,
-        or (number, diameter, length) rows in mm; ``parameters`` a LinuxCNC parameter file; ``search`` folders of
-        subroutine files, ':' between them; ``block_delete`` leaves out lines that begin with '/'; ``line_limit``
-        bounds what loops execute (0: 20 million lines). OSError, or FormatError "file:line:column: error: 'word' ...".
-        Any thread."""
+        or (number, diameter, length) rows in mm; ``diameters`` maps numbers of tools to diameters in mm, for cutter
+        compensation where no table tells; ``parameters`` a LinuxCNC parameter file; ``machine_unit`` is what the
+        lengths in the two files are in; ``search`` folders of subroutine files, ':' between them; ``block_delete``
+        leaves out lines that begin with '/'; ``line_limit`` bounds what loops execute (0: 20 million lines). OSError,
+        or FormatError "file:line:column: error: 'word' ...". Any thread."""
     @classmethod
     def parse_gcode(
         cls,
@@ -107,7 +110,9 @@ class Program:
         start: Optional[Point] = None,
         dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
         tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
+        diameters: Optional[Mapping[int, float]] = None,
         parameters: Optional[Path] = None,
+        machine_unit: Literal["mm", "inch"] = "mm",
         search: Optional[str] = None,
         block_delete: bool = False,
         line_limit: int = 0,
@@ -122,7 +127,9 @@ class Program:
         start: Optional[Point] = None,
         dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
         tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
+        diameters: Optional[Mapping[int, float]] = None,
         parameters: Optional[Path] = None,
+        machine_unit: Literal["mm", "inch"] = "mm",
         search: Optional[str] = None,
         block_delete: bool = False,
         line_limit: int = 0,
@@ -527,6 +534,16 @@ class Simulation:
         """Volume after, mm3."""
 
 @final
+class Surface:
+    """The surface that a program makes of the stock ``first`` (as it is now, not kept), exactly: the first shape and the
+    sweeps of the cutters in ``tools``. The program can no longer be added to while the surface lives. Immutable, any
+    thread."""
+
+    def __new__(
+        cls, first: Stock, program: Program, tools: dict[int, Cutter], *, progress: Progress = None
+    ) -> Surface: ...
+
+@final
 class Mesh:
     """Triangles: vertices an (n, 3) table in mm, triangles an (m, 3) table of vertex numbers, counter-clockwise seen
     from outside. Immutable, any thread. ValueError for numbers out of range."""
@@ -536,10 +553,21 @@ class Mesh:
     def read(cls, path: Path) -> Mesh:
         """Mesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."""
     @classmethod
-    def from_stock(cls, stock: Stock, error: float = 0.0, *, budget: int = 0, progress: Progress = None) -> Mesh:
+    def from_stock(
+        cls,
+        stock: Stock,
+        error: float = 0.0,
+        *,
+        budget: int = 0,
+        surface: Optional[Surface] = None,
+        moves: Optional[int] = None,
+        progress: Progress = None,
+    ) -> Mesh:
         """The surface of a stock with its edges: closed, oriented outwards, no triangles that cut each other. Vertices
         are left out while the mesh stays within ``error`` mm of the full one, until at most ``budget`` triangles are
-        left (0: as few as the error allows). What it came to is in ``contour``."""
+        left (0: as few as the error allows). Vertices lie exactly on the Surface of which the stock has seen the first
+        ``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. What it came to is in
+        ``contour``."""
     def write(self, path: Path, *, colors: Optional[Table] = None, progress: Progress = None) -> None:
         """Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure
         loses nothing. ``colors`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."""
@@ -616,6 +644,7 @@ class Contour(NamedTuple):
     full_triangles: int
     triangles: int
     sharp_vertices: int
+    exact_vertices: int
     parted_cells: int
     intersections_found: int
     intersections_left: int

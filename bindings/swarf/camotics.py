@@ -72,5 +72,8 @@ def read(
         stock = _stock(project)
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise FormatError(f"{path}: is no CAMotics project: {type(error).__name__}: {error}") from None
-    program = Program.read_gcode(source, progress=progress, **(options or {}))
+    words = dict(options or {})
+    known = {number: 2 * tool.radius() for number, tool in tools.items()}
+    words["diameters"] = {**known, **(words.get("diameters") or {})}
+    program = Program.read_gcode(source, progress=progress, **words)
     return Job(name=os.path.basename(path), program=program, tools=tools, tool_names=names, stock=stock)

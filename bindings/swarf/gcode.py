@@ -7,6 +7,7 @@ import math
 import os
 from typing import Any, Iterator, Optional, Union
 
+from . import specs
 from ._native import Program
 from .records import ARC, AXES, MOVE, SECTION, section_and_kind
 
@@ -29,15 +30,19 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     """The options that say how G-code is to be read."""
     group = command.add_argument_group("G-code")
     group.add_argument("--dialect", choices=DIALECTS, default=DIALECTS[0], help="the control (default: linuxcnc)")
-    group.add_argument("--tool-table", metavar="FILE.tbl", help="LinuxCNC's tool table: offsets and diameters, mm")
-    group.add_argument("--parameters", metavar="FILE.var", help="LinuxCNC's parameter file: work offsets, mm")
+    group.add_argument("--tool", metavar="N=SPEC", action="append", default=[],
+                       help="tool number N, e.g. 1=flat:d=3,l=18; with teeth=2 its chips are known (repeatable)")
+    group.add_argument("--tool-table", metavar="FILE.tbl", help="LinuxCNC's tool table: offsets and diameters")
+    group.add_argument("--parameters", metavar="FILE.var", help="LinuxCNC's parameter file: work offsets")
+    group.add_argument("--machine-unit", choices=("mm", "inch"), default="mm",
+                       help="what the lengths in these two files are in (default: mm)")
     group.add_argument("--search", metavar="FOLDERS", help="folders with files of subroutines, ':' between them")
     group.add_argument("--block-delete", action="store_true", help="leave out lines that begin with '/'")
     group.add_argument("--start", metavar="X,Y,Z", help="where the tool stands first, mm (default: not known)")
 
 
 def options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Those options as keywords of read_gcode(). ValueError."""
+    """Those options as keywords of read_gcode(). ValueError, FormatError."""
     start = None
     if arguments.start is not None:
         words = arguments.start.split(",")
@@ -50,7 +55,9 @@ def options(arguments: argparse.Namespace) -> dict[str, Any]:
     return {
         "dialect": arguments.dialect,
         "tools": arguments.tool_table,
+        "diameters": {number: 2 * cutter.radius() for number, (cutter, *_) in specs.tools(arguments.tool).items()},
         "parameters": arguments.parameters,
+        "machine_unit": arguments.machine_unit,
         "search": arguments.search,
         "block_delete": arguments.block_delete,
         "start": start,

@@ -22,8 +22,6 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument("input", metavar="INPUT", help="a G-code file, or a .FCStd file where the add-on is installed")
     command.add_argument("--job", metavar="NAME", help="the job in a .FCStd file, if it has several")
     command.add_argument("--stock", metavar="SPEC", help=specs.STOCK_HELP)
-    command.add_argument("--tool", metavar="N=SPEC", action="append", default=[],
-                         help="tool number N, e.g. 1=flat:d=3,l=18; with teeth=2 its chips are known (repeatable)")
     size = command.add_mutually_exclusive_group()
     size.add_argument("--voxel", metavar="MM", type=float, help="edge of a voxel")
     size.add_argument("--resolution", metavar="N", type=float,
@@ -42,30 +40,20 @@ def set_threads(arguments: argparse.Namespace) -> None:
 def read_job(arguments: argparse.Namespace, bar: Bar) -> Job:
     """The Job in the input, with what the other words say of stock and tools. ValueError where something is missing."""
     stock = None if arguments.stock is None else specs.stock(arguments.stock)
+    tools = specs.tools(arguments.tool)
     options = gcode.options(arguments)
     job = readers.read(arguments.input, arguments.job, lambda fraction: bar("read", fraction), options)
     if stock is not None:
         job.stock = stock
-    add_tools(job, arguments.tool)
+    for number, (cutter, text, teeth) in tools.items():
+        job.tools[number], job.tool_names[number] = cutter, text
+        if teeth:
+            job.teeth[number] = teeth
     if len(job.program) == 0:
         raise ValueError(f"{arguments.input}: the program has no moves: there is nothing to simulate")
     if os.path.splitext(arguments.input)[1].lower() in readers.GCODE_SUFFIXES:
         check_gcode_job(job, arguments.input)
     return job
-
-
-def add_tools(job: Job, words: Sequence[str]) -> None:
-    """Put ``--tool`` into the job, over what it has; ValueError where a number is given twice."""
-    given = set()
-    for word in words:
-        number, cutter, text, teeth = specs.tool(word)
-        if number in given:
-            raise ValueError(f"tool {number}: given twice")
-        given.add(number)
-        job.tools[number] = cutter
-        job.tool_names[number] = text
-        if teeth:
-            job.teeth[number] = teeth
 
 
 def check_gcode_job(job: Job, path: str) -> None:

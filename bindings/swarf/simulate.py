@@ -8,7 +8,7 @@ import time
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Sequence
 
-from ._native import Camera, Comparison, GeometryError, Mesh, Scene, Simulation, Stock, compare_volume
+from ._native import Camera, Comparison, GeometryError, Mesh, Scene, Simulation, Stock, Surface, compare_volume
 from .job import Job
 
 #: Voxels along the longest edge of the stock where nobody says how fine: fast on any machine, and fine enough to see.
@@ -156,12 +156,16 @@ def simulate(
     if picture is not None:  # before the cut: the exact surface begins with the stock as it was
         scene = Scene(stock)
         scene.set_surface(stock, job.program, job.tools)
+    exact = None
+    if mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs):
+        exact = Surface(stock, job.program, job.tools)
     simulation = timed("cut", lambda report: stock.simulate(job.program, job.tools, batch=batch, progress=report))
     result = Result(job, stock, simulation, seconds=seconds)
     if compare and job.design is not None:
         result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
-    if mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs):
-        result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, progress=report))
+    if exact is not None:
+        result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
+                                                                   progress=report))
     for path in outputs:
         written = result.mesh if output_suffix(path) in MESH_SUFFIXES else stock
         timed("write", lambda report: written.write(path, progress=report))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any
+from typing import Any, Sequence
 
 from ._native import Cutter, Error, Mesh
 from .simulate import MESH_SUFFIXES, STOCK_SUFFIXES
@@ -64,6 +64,17 @@ def tool(spec: str) -> tuple[int, Cutter, str, int]:
         return int(number), Cutter(shape), shape, teeth
     except (Error, ValueError) as error:
         raise type(error)(f"tool {int(number)}: {error}") from None
+
+
+def tools(texts: Sequence[str]) -> dict[int, tuple[Cutter, str, int]]:
+    """Cutter, text and teeth (0: not told) of several ``--tool`` by number. ValueError where a number is given twice."""
+    found: dict[int, tuple[Cutter, str, int]] = {}
+    for given in texts:
+        number, cutter, text, teeth = tool(given)
+        if number in found:
+            raise ValueError(f"tool {number}: given twice")
+        found[number] = cutter, text, teeth
+    return found
 
 
 def _teeth(number: int, text: str) -> tuple[str, int]:

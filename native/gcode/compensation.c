@@ -61,9 +61,18 @@ static swarf_status radius_of(swarf_machine *machine, swarf_block *block, const 
     if (number == 0) number = machine->section.tool < 0 ? 0 : machine->section.tool;
     const swarf_gcode_tool *tool = swarf_machine_find_tool(machine, number);
     *out = 0.0;
-    if (tool) *out = 0.5 * tool->diameter_mm;
+    if (tool && tool->diameter_mm != 0.0) {
+        *out = 0.5 * tool->diameter_mm;
+        return SWARF_OK;
+    }
+    for (size_t i = 0; i < machine->diameter_count; i++)
+        if (machine->diameters[i].number == number) {
+            *out = 0.5 * machine->diameters[i].mm;
+            return SWARF_OK;
+        }
     if (tool || number == 0) return SWARF_OK;
-    return swarf_gcode_fail(machine, d ? d : word, "needs the diameter of tool T%d; give a tool table", number);
+    return swarf_gcode_fail(machine, d ? d : word, "needs the diameter of tool T%d; give the tool or a tool table",
+                            number);
 }
 
 swarf_status swarf_machine_radius(swarf_machine *machine, swarf_block *block)

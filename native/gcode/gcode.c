@@ -73,6 +73,7 @@ swarf_gcode_options swarf_gcode_options_default(void)
     memset(&options, 0, sizeof options);
     options.size = sizeof options;
     for (int k = 0; k < 3; k++) options.start[k] = NAN;
+    options.parameter_unit_mm = 1.0;
     return options;
 }
 

@@ -42,10 +42,18 @@ swarf_status swarf_machine_begin(swarf_machine *machine, const swarf_gcode_optio
     SWARF_TRY(swarf_parameters_create(&machine->parameters));
     machine->parameters.numbered[5599] = 1.0;
     if (options->parameters) {
-        SWARF_TRY(swarf_parameters_read(&machine->parameters, options->parameters));
+        SWARF_TRY(swarf_parameters_read(&machine->parameters, options->parameters, options->parameter_unit_mm));
         machine->machine_known = 1;
     }
     SWARF_TRY(copy_tools(machine, options));
+    for (size_t i = 0; i < options->diameter_count; i++)
+        SWARF_REQUIRE(options->diameters && options->diameters[i].number >= 0 && options->diameters[i].mm >= 0 &&
+                          options->diameters[i].mm <= SWARF_COORDINATE_LIMIT_MM,
+                      "gcode: diameter %zu: tool T%d of %g mm", i + 1,
+                      options->diameters ? (int)options->diameters[i].number : 0,
+                      options->diameters ? options->diameters[i].mm : 0);
+    machine->diameters = options->diameters;
+    machine->diameter_count = options->diameter_count;
     for (int k = 0; k < 3; k++) machine->position[k] = options->start[k];
     swarf_modes *modes = &machine->modes;
     modes->motion = machine->dialect->motion;

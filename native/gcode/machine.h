@@ -125,6 +125,8 @@ struct swarf_machine {
 
     swarf_gcode_tool *tools;
     size_t tool_count, tool_room;
+    const swarf_gcode_diameter *diameters; /**< the caller's */
+    size_t diameter_count;
     swarf_section section, settled;
     uint32_t *tool_uses; /**< by tool number: M6 so far, for the operations' names */
     size_t tool_room_used;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gcode/parameters.h"
 
+#include "gcode/machine.h"
+
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/number.h"
@@ -101,8 +103,22 @@ static const char *skip_blanks(const char *at, const char *end)
     return at;
 }
 
-swarf_status swarf_parameters_read(swarf_parameters *parameters, const char *path)
+/* Of the parameters that hold places - G28's, G30's, G92's and the work offsets - X Y Z and U V W are lengths; A B C
+ * are angles, and the work offsets' tenth is their turn. */
+static int is_length(int number)
 {
+    static const int sets[] = {5161, 5181, 5211};
+    int axis = -1;
+    for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++)
+        if (number >= sets[i] && number < sets[i] + SWARF_AXES) axis = number - sets[i];
+    if (number >= 5221 && number < 5221 + 20 * SWARF_SYSTEMS && (number - 5221) % 20 < SWARF_AXES)
+        axis = (number - 5221) % 20;
+    return axis >= 0 && (axis < 3 || axis > 5);
+}
+
+swarf_status swarf_parameters_read(swarf_parameters *parameters, const char *path, double unit_mm)
+{
+    SWARF_REQUIRE(unit_mm > 0.0 && unit_mm <= 1000.0, "parameters: a unit of %g mm", unit_mm);
     char *data;
     size_t length;
     SWARF_TRY(swarf_file_read(path, &data, &length));
@@ -125,7 +141,7 @@ swarf_status swarf_parameters_read(swarf_parameters *parameters, const char *pat
             else if (!(fabs(value) <= 1e9))
                 status = swarf_fail(SWARF_ERROR_FORMAT, "%s:%d:1: error: %g is out of range", path, line, value);
             else
-                parameters->numbered[last = (int)number] = value;
+                parameters->numbered[last = (int)number] = is_length((int)number) ? value * unit_mm : value;
         }
         at = stop < end ? stop + 1 : end;
     }

@@ -39,7 +39,8 @@ swarf_status swarf_parameters_set(swarf_parameters *parameters, const char *name
 /** Forget the locals from `base` on. */
 void swarf_parameters_leave(swarf_parameters *parameters, size_t base);
 
-/** Read a LinuxCNC parameter file: two columns, number and value; lines of another form are left out. */
-swarf_status swarf_parameters_read(swarf_parameters *parameters, const char *path);
+/** Read a LinuxCNC parameter file: two columns, number and value; lines of another form are left out. Places in it are
+ *  in units of `unit_mm`, afterwards in mm. */
+swarf_status swarf_parameters_read(swarf_parameters *parameters, const char *path, double unit_mm);
 
 #endif

@@ -11,13 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How often the surroundings of facets that cut each other are made again: first unsimplified, then with vertices in
- * the middle of their crossings; what then still touches itself does so on the stock's surface. */
-enum { ATTEMPTS = 6 };
+/* How often the surroundings of facets that cut each other are made again: first unsimplified, then as if the surface
+ * were smooth, then with vertices in the middle of their crossings; what then still touches itself does so on the
+ * stock's surface. */
+enum { ATTEMPTS = 7 };
 
 swarf_contour_options swarf_contour_options_default(void)
 {
-    return (swarf_contour_options){.size = sizeof(swarf_contour_options)};
+    return (swarf_contour_options){.size = sizeof(swarf_contour_options), .moves = SIZE_MAX};
 }
 
 static swarf_status cross_one(void *context, size_t index)
@@ -30,6 +31,12 @@ static swarf_status place_one(void *context, size_t index)
 {
     contour *work = context;
     return swarf_contour_place(work, &work->blocks[index]);
+}
+
+static swarf_status place_again(void *context, size_t index)
+{
+    contour *work = context;
+    return work->blocks[index].changed ? swarf_contour_place(work, &work->blocks[index]) : SWARF_OK;
 }
 
 static swarf_status join_one(void *context, size_t index)
@@ -131,8 +138,7 @@ static void note_cells(contour *work, const swarf_facets *facets, const swarf_fa
                     for (int bit = 0; bit < 64; bit++)
                         if (y + bit / 8 < lo[1] || y + bit / 8 > hi[1] || z + bit % 8 < lo[2] || z + bit % 8 > hi[2])
                             word &= ~(UINT64_C(1) << bit);
-                    block->calm_mask[i] |= word & block->kept_mask[i];
-                    block->keep_mask[i] |= word;
+                    block->noted_mask[i] |= word;
                 }
             }
 }
@@ -185,6 +191,23 @@ static swarf_status attempt(stage *s, int first, swarf_facet_pair **pairs, size_
     return swarf_facets_intersect(&s->facets, first ? s->progress : NULL, 0.9, 0.98, pairs, count);
 }
 
+/* The next remedy for the cells noted; without an error to spend all vertices are kept already. */
+static void take_more_care(stage *s)
+{
+    for (size_t b = 0; b < s->work->block_count; b++) {
+        contour_block *block = &s->work->blocks[b];
+        block->changed = 0;
+        for (int x = 0; x < 8; x++) {
+            const uint64_t noted = block->noted_mask[x], kept = s->options->error_mm > 0 ? block->keep_mask[x] : noted;
+            block->changed |= (noted & kept) != 0;
+            block->middle_mask[x] |= noted & block->calm_mask[x];
+            block->calm_mask[x] |= noted & kept;
+            block->keep_mask[x] |= noted;
+            block->noted_mask[x] = 0;
+        }
+    }
+}
+
 /* Attempt until no facets cut each other. */
 static swarf_status settle(stage *s)
 {
@@ -199,9 +222,8 @@ static swarf_status settle(stage *s)
         for (size_t i = 0; i < count; i++) note_cells(work, &s->facets, &pairs[i]);
         free(pairs);
         if (count == 0 || round == ATTEMPTS) return SWARF_OK;
-        for (size_t i = 0; i < work->block_count; i++)
-            memcpy(work->blocks[i].kept_mask, work->blocks[i].keep_mask, sizeof work->blocks[i].kept_mask);
-        SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, NULL, 0, 1));
+        take_more_care(s);
+        SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, NULL, 0, 1));
     }
 }
 
@@ -247,6 +269,7 @@ static swarf_status make(stage *s, swarf_mesh **out)
     for (size_t i = 0; i < work->block_count; i++) {
         const contour_block *block = &work->blocks[i];
         s->report.sharp_vertices += block->sharp_count;
+        s->report.exact_vertices += block->exact_count;
         for (int x = 0; x < 8; x++) s->report.parted_cells -= (size_t)__builtin_popcountll(block->cell_mask[x]);
         s->report.parted_cells += block->vertex_count;
     }
@@ -274,7 +297,10 @@ swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options 
                   "mesh: a budget of %zu triangles needs an error (mm) that may be spent on it",
                   options->triangle_budget);
     SWARF_TRY(swarf_stock_enter_read(stock));
-    contour work = {.stock = stock, .layout = swarf_tree_get_layout(stock->tree)};
+    contour work = {.stock = stock,
+                    .layout = swarf_tree_get_layout(stock->tree),
+                    .surface = options->surface,
+                    .moves = options->moves};
     stage s = {.work = &work, .options = options, .progress = progress};
     const swarf_status status = make(&s, out);
     if (status == SWARF_OK && report) *report = s.report;

@@ -45,7 +45,11 @@ void swarf_contour_table_fill(contour_table *table);
 typedef struct contour_crossing {
     float t;
     float normal[3];
+    int32_t move;  /* that made the surface there, -1: the first shape; SWARF_BY_FIELD: known from the field alone */
+    int32_t piece; /* of the first shape or the cutter */
 } contour_crossing;
+
+enum { SWARF_BY_FIELD = -2 };
 
 /** An active cell of a block. */
 typedef struct contour_cell {
@@ -65,13 +69,17 @@ typedef struct contour_block {
     uint16_t edge_rank[3][8]; /* crossings before that word */
     uint64_t cell_mask[8];
     uint16_t cell_rank[8];
-    uint64_t keep_mask[8]; /* cells near facets that cut each other: their vertices stay */
-    uint64_t kept_mask[8]; /* the same, one attempt ago */
-    uint64_t calm_mask[8]; /* where that was not enough: vertices in the middle of their crossings */
+    /* cells near facets that cut each other, each mask a part of the one before: */
+    uint64_t keep_mask[8];   /* their vertices stay when others are left out */
+    uint64_t calm_mask[8];   /* and are where the surface is smooth, their quadrilaterals cut into four */
+    uint64_t middle_mask[8]; /* and are in the middle of their crossings, which never cut each other */
+    uint64_t noted_mask[8];  /* to go one further */
+    int changed;             /* vertices are to be placed again */
     uint32_t vertex_count;
     uint32_t facet_count;
     uint32_t centre_count; /* vertices on crossings, of quadrilaterals cut into four */
     uint32_t sharp_count;  /* vertices on edges and corners of the surface */
+    uint32_t exact_count;  /* vertices on the exact surface */
     size_t vertex_first;   /* of the whole mesh */
     size_t centre_first;
     size_t facet_first;
@@ -88,6 +96,8 @@ typedef struct contour_block {
 typedef struct contour {
     const swarf_stock *stock;
     const swarf_tree_layout *layout;
+    const swarf_surface *surface; /* NULL: the field alone */
+    size_t moves;                 /* of the surface that the stock has seen */
     contour_table table;
     contour_block *blocks;
     size_t block_count;
@@ -108,16 +118,44 @@ void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values
 contour_block *swarf_contour_block_at(const contour *work, const int32_t ijk[3]);
 /** The crossing of an edge, which must exist. */
 const contour_crossing *swarf_contour_crossing(const contour *work, const int32_t voxel[3], int axis);
+/** What the exact surface can be within a block's cells, for the caller to destroy; NULL without a surface. */
+swarf_status swarf_contour_near(const contour *work, const contour_block *block, swarf_surface_near **out);
+
 /** What is known of one cycle, in voxels from the low corner of its cell. */
 typedef struct contour_polygon {
     int count;
     double point[12][3];
     double normal[12][3];
+    int32_t move[12];
+    int32_t piece[12];
     double corner[8]; /* the field, in voxels */
+    double origin[3]; /* of the cell, in mm */
+    double voxel;     /* in mm */
 } contour_polygon;
+
+/** Vertices keep this far (in voxels) from the sides of their cell, so that those of two cells never fall together; it
+ *  is a hundredth of the error that the mesh promises. */
+#define SWARF_CONTOUR_MARGIN 1e-4
 
 /** Place the vertex of a cycle inside its cell; returns how many independent faces meet there (1 smooth, 2 on an edge,
  *  3 on a corner). */
 int swarf_contour_vertex(const contour_polygon *polygon, double out[3]);
+/** The same on the exact surface; the polygon has only crossings that this made, one at least. */
+int swarf_contour_vertex_exact(const contour_polygon *polygon, const swarf_surface_near *near, double out[3]);
+
+/** The same where the surface is taken as smooth. */
+void swarf_contour_vertex_smooth(const contour_polygon *polygon, const swarf_surface_near *near, double out[3]);
+
+/** A face that a vertex lies on. */
+typedef struct contour_plane {
+    double point[3];
+    double normal[3]; /* unit */
+} contour_plane;
+
+/** Point that the planes have in common, the nearest to `about` where they leave a choice; moved along an edge into the
+ *  cell where that is possible. What eigenvalues below `least` of the greatest carry is left out. Returns the rank. */
+int swarf_contour_meet(const contour_plane *planes, int count, const double about[3], double least, double out[3]);
+/** Move into the cell; 1 when it was not. */
+int swarf_contour_clamp(double x[3]);
 
 #endif

@@ -9,6 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Parts of a voxel. A crossing is searched for to a thousandth of what the mesh promises; a voxel this near to the
+ * exact surface may have either sign in the field. */
+static const double crossing_tolerance = 1e-5, noise = 1e-3;
+/* An edge that meets the surface at a flatter angle than this (as a sine) is left to the bracketed search. */
+static const double least_slope = 0.1;
+
 /* Block coordinates -> place in block_at; -1 outside the layout. */
 static ptrdiff_t place_of(const swarf_tree_layout *layout, const int32_t ijk[3])
 {
@@ -91,10 +97,29 @@ void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values
     }
 }
 
+swarf_status swarf_contour_near(const contour *work, const contour_block *block, swarf_surface_near **out)
+{
+    *out = NULL;
+    if (!work->surface) return SWARF_OK;
+    swarf_surface_near *near;
+    swarf_box box;
+    for (int k = 0; k < 3; k++) {
+        box.lo[k] = work->layout->origin[k] + block->ijk[k] * work->layout->voxel;
+        box.hi[k] = box.lo[k] + SWARF_LEAF_DIM * work->layout->voxel;
+    }
+    SWARF_TRY(swarf_surface_near_create(work->surface, &near));
+    const swarf_status status = swarf_surface_gather(near, work->moves, &box);
+    if (status == SWARF_OK)
+        *out = near;
+    else
+        swarf_surface_near_destroy(near);
+    return status;
+}
+
 static const int stride[3] = {SWARF_HALO * SWARF_HALO, SWARF_HALO, 1};
 
 /* From the field: linear along the edge; the gradient by differences along it and central ones across. */
-static void cross_edge(const float *at, int axis, contour_crossing *out)
+static void cross_field(const float *at, int axis, contour_crossing *out)
 {
     const double low = at[0], high = at[stride[axis]], t = low / (low - high);
     double normal[3], square = 0;
@@ -108,6 +133,58 @@ static void cross_edge(const float *at, int axis, contour_crossing *out)
     const double length = sqrt(square); /* the part along the edge is not 0: the signs differ */
     for (int k = 0; k < 3; k++) out->normal[k] = (float)(normal[k] / length);
     out->t = (float)t;
+    out->move = SWARF_BY_FIELD;
+    out->piece = 0;
+}
+
+/* From the exact surface: Newton's steps from where the field has it, which on flat faces is at once; the bracketed
+ * search where these do not end. A voxel as good as on the surface may have the other sign in the field's floats: then
+ * the surface is at that voxel. Where there is no such surface the field's crossing stays. */
+static void cross_surface(const swarf_surface_near *near, const double a[3], double voxel, int axis, int outwards,
+                          contour_crossing *crossing)
+{
+    swarf_surface_point found;
+    double t = (double)crossing->t, point[3] = {a[0], a[1], a[2]};
+    int good = 0;
+    for (int step = 0; step < 4 && !good; step++) {
+        point[axis] = a[axis] + t * voxel;
+        swarf_surface_evaluate(near, point, &found);
+        const double slope = outwards ? found.normal[axis] : -found.normal[axis];
+        good = slope > 0 && fabs(found.value) <= crossing_tolerance * voxel;
+        if (good || slope < least_slope) break;
+        t = fmin(fmax(t - found.value / (voxel * found.normal[axis]), 0), 1);
+    }
+    if (!good) {
+        const double b[3] = {a[0] + (axis == 0) * voxel, a[1] + (axis == 1) * voxel, a[2] + (axis == 2) * voxel};
+        good = swarf_surface_crossing(near, a, b, crossing_tolerance * voxel, &t, &found);
+    }
+    if (!good) {
+        t = crossing->t < 0.5f ? 0 : 1;
+        point[axis] = a[axis] + t * voxel;
+        swarf_surface_evaluate(near, point, &found);
+        if (fabs(found.value) > noise * voxel) return;
+    }
+    t = fmin(fmax(t, SWARF_CONTOUR_MARGIN), 1 - SWARF_CONTOUR_MARGIN);
+    *crossing = (contour_crossing){.t = (float)t, .move = (int32_t)found.move, .piece = found.piece};
+    for (int k = 0; k < 3; k++) crossing->normal[k] = (float)found.normal[k];
+}
+
+/* All crossings of a block, in the order of its masks. */
+static void cross_edges(const contour *work, contour_block *block, const float *values, const swarf_surface_near *near)
+{
+    const swarf_tree_layout *layout = work->layout;
+    contour_crossing *next = block->crossings;
+    for (int axis = 0; axis < 3; axis++)
+        for (int x = 0; x < 8; x++)
+            for (uint64_t word = block->edge_mask[axis][x]; word; word &= word - 1, next++) {
+                const int bit = __builtin_ctzll(word), at[3] = {x, bit >> 3, bit & 7};
+                const float *value = values + ((x + 1) * SWARF_HALO + at[1] + 1) * SWARF_HALO + at[2] + 1;
+                cross_field(value, axis, next);
+                if (!near) continue;
+                double a[3];
+                for (int k = 0; k < 3; k++) a[k] = layout->origin[k] + (block->ijk[k] + at[k]) * layout->voxel;
+                cross_surface(near, a, layout->voxel, axis, *value < 0, next);
+            }
 }
 
 swarf_status swarf_contour_cross(contour *work, contour_block *block)
@@ -131,13 +208,10 @@ swarf_status swarf_contour_cross(contour *work, contour_block *block)
     if (count == 0) return SWARF_OK;
     block->crossings = malloc(count * sizeof *block->crossings);
     if (!block->crossings) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for crossings");
-    contour_crossing *next = block->crossings;
-    for (int axis = 0; axis < 3; axis++)
-        for (int x = 0; x < 8; x++)
-            for (uint64_t word = block->edge_mask[axis][x]; word; word &= word - 1) {
-                const int bit = __builtin_ctzll(word);
-                cross_edge(values + ((x + 1) * SWARF_HALO + (bit >> 3) + 1) * SWARF_HALO + (bit & 7) + 1, axis, next++);
-            }
+    swarf_surface_near *near;
+    SWARF_TRY(swarf_contour_near(work, block, &near));
+    cross_edges(work, block, values, near);
+    swarf_surface_near_destroy(near);
     return SWARF_OK;
 }
 

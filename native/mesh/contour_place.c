@@ -48,10 +48,12 @@ static void gather(const contour *work, const contour_block *block, const int at
             out->point[i][k] = offset[k] + (k == axis ? crossing->t : 0);
             out->normal[i][k] = crossing->normal[k];
         }
+        out->move[i] = crossing->move;
+        out->piece[i] = crossing->piece;
     }
 }
 
-static void place_calm(const contour_polygon *polygon, double out[3])
+static void place_middle(const contour_polygon *polygon, double out[3])
 {
     for (int k = 0; k < 3; k++) {
         out[k] = 0;
@@ -59,14 +61,48 @@ static void place_calm(const contour_polygon *polygon, double out[3])
     }
 }
 
-static void place_cell(contour *work, contour_block *block, const float *values, int index, contour_cell *cell,
-                       uint32_t *used)
+/* Leave out the crossings that only the field knows. */
+static void keep_exact(contour_polygon *polygon)
+{
+    int kept = 0;
+    for (int i = 0; i < polygon->count; i++) {
+        if (polygon->move[i] == SWARF_BY_FIELD) continue;
+        memcpy(polygon->point[kept], polygon->point[i], sizeof polygon->point[i]);
+        memcpy(polygon->normal[kept], polygon->normal[i], sizeof polygon->normal[i]);
+        polygon->move[kept] = polygon->move[i];
+        polygon->piece[kept++] = polygon->piece[i];
+    }
+    polygon->count = kept;
+}
+
+/* Place the vertex of a cycle on the exact surface if that made any of its crossings, else by the field. */
+static void place_vertex(contour_block *block, const contour_polygon *polygon, const swarf_surface_near *near, int calm,
+                         int middle, double out[3])
+{
+    contour_polygon known = *polygon;
+    keep_exact(&known);
+    const int exact = near && known.count > 0;
+    int rank = 1;
+    if (middle || (calm && !exact))
+        place_middle(polygon, out);
+    else if (calm)
+        swarf_contour_vertex_smooth(&known, near, out);
+    else
+        rank = exact ? swarf_contour_vertex_exact(&known, near, out) : swarf_contour_vertex(polygon, out);
+    block->sharp_count += rank > 1;
+    block->exact_count += exact && !middle;
+}
+
+static void place_cell(contour *work, contour_block *block, const float *values, const swarf_surface_near *near,
+                       int index, contour_cell *cell, uint32_t *used)
 {
     const swarf_tree_layout *layout = work->layout;
     const int at[3] = {index >> 6, index >> 3 & 7, index & 7};
     const contour_case *joined = &work->table.entry[cell->config][cell->flip];
     const int calm = (int)(block->calm_mask[at[0]] >> (index & 63) & 1);
-    contour_polygon polygon;
+    const int middle = (int)(block->middle_mask[at[0]] >> (index & 63) & 1);
+    contour_polygon polygon = {.voxel = layout->voxel};
+    for (int k = 0; k < 3; k++) polygon.origin[k] = layout->origin[k] + (block->ijk[k] + at[k]) * layout->voxel;
     for (int c = 0; c < 8; c++)
         polygon.corner[c] =
             (double)values[((at[0] + 1 + (c >> 2)) * SWARF_HALO + at[1] + 1 + (c >> 1 & 1)) * SWARF_HALO + at[2] + 1 +
@@ -76,13 +112,9 @@ static void place_cell(contour *work, contour_block *block, const float *values,
     for (int cycle = 0; cycle < joined->count; cycle++) {
         double inside[3] = {0.5, 0.5, 0.5};
         gather(work, block, at, joined, cell->config, cycle, &polygon);
-        if (calm)
-            place_calm(&polygon, inside);
-        else if (polygon.count > 0 && swarf_contour_vertex(&polygon, inside) > 1)
-            block->sharp_count++;
+        if (polygon.count > 0) place_vertex(block, &polygon, near, calm, middle, inside);
         for (int k = 0; k < 3; k++)
-            block->vertices[*used].xyz[k] =
-                (float)(layout->origin[k] + (block->ijk[k] + at[k] + inside[k]) * layout->voxel);
+            block->vertices[*used].xyz[k] = (float)(polygon.origin[k] + inside[k] * layout->voxel);
         (*used)++;
     }
 }
@@ -93,7 +125,7 @@ swarf_status swarf_contour_place(contour *work, contour_block *block)
     contour_cell cells[SWARF_LEAF_SIZE];
     uint32_t cell_count = 0, vertex_count = 0;
     swarf_contour_fetch(work, block->ijk, values);
-    block->sharp_count = 0;
+    block->sharp_count = block->exact_count = 0;
     unsigned inside[9][9]; /* signs of the rows along z */
     for (int x = 0; x < 9; x++)
         for (int y = 0; y < 9; y++) {
@@ -128,13 +160,19 @@ swarf_status swarf_contour_place(contour *work, contour_block *block)
     block->cells = malloc(cell_count * sizeof *cells);
     block->vertices = malloc(vertex_count * sizeof *block->vertices);
     if (!block->cells || !block->vertices) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for vertices");
+    swarf_surface_near *near;
+    SWARF_TRY(swarf_contour_near(work, block, &near));
     uint32_t used = 0, next = 0;
     for (int x = 0; x < 8; x++)
         for (uint64_t word = block->cell_mask[x]; word; word &= word - 1)
-            place_cell(work, block, values, x * 64 + __builtin_ctzll(word), &cells[next++], &used);
+            place_cell(work, block, values, near, x * 64 + __builtin_ctzll(word), &cells[next++], &used);
+    swarf_surface_near_destroy(near);
     memcpy(block->cells, cells, cell_count * sizeof *cells);
     return SWARF_OK;
 }
+
+/* In voxels: triangles less high than this are avoided. */
+static const double least_height = 1e-3;
 
 /* Corner of a quadrilateral: the vertex of the cell `back` of the edge's voxel. */
 typedef struct corner {
@@ -162,16 +200,19 @@ static int find_corner(const contour *work, const int32_t voxel[3], int axis, co
     return 1;
 }
 
+/* Cosine between a triangle and the true normal; -1 for a needle that may turn over when it is rounded to floats. */
 static double facing(const double *a, const double *b, const double *c, const double normal[3])
 {
-    double u[3], v[3];
+    double u[3], v[3], longest = 0;
     for (int k = 0; k < 3; k++) {
         u[k] = b[k] - a[k];
         v[k] = c[k] - a[k];
+        longest += u[k] * u[k] + v[k] * v[k];
     }
     const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    return length > 1e-12 ? (n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2]) / length : -1;
+    const double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    if (square < least_height * least_height * longest) return -1;
+    return (n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2]) / sqrt(square);
 }
 
 /* Whether the two triangles on the diagonal corner[first] - corner[first + 2] meet the edge itself and not only its

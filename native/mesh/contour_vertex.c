@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* The vertex of one cycle: on a smooth face the point of the surface nearest to the middle of the crossings, on edges
- * and corners where the faces meet.
+/* The vertex of one cycle by the field alone: on a smooth face the point of the surface nearest to the middle of the
+ * crossings, on edges and corners where the faces meet.
  *
  * Every crossing is a plane of a quadratic error function (Ju, Losasso, Schaefer, Warren 2002), solved about the middle
  * of the crossings with eigenvalues that carry nothing left out.
@@ -16,9 +16,7 @@
 static const double same_face_cosine = 0.866;
 /* Eigenvalues below this part of the greatest carry nothing but the noise of the gradients. */
 static const double least_eigenvalue = 0.04;
-/* Vertices keep this far (in voxels) from the sides of their cell, so that those of two cells never fall together; it
- * is a hundredth of the error that the mesh promises. */
-static const double margin = 1e-4;
+static const double margin = SWARF_CONTOUR_MARGIN;
 
 static double dot(const double a[3], const double b[3])
 {
@@ -33,7 +31,7 @@ static void middle_of(const contour_polygon *polygon, double out[3])
     }
 }
 
-static int clamp(double x[3])
+int swarf_contour_clamp(double x[3])
 {
     int moved = 0;
     for (int k = 0; k < 3; k++) {
@@ -73,18 +71,16 @@ static void project(const contour_polygon *polygon, double x[3])
         const double square = dot(gradient, gradient);
         if (fabs(value) < 1e-5 || square < 1e-6) return;
         for (int k = 0; k < 3; k++) x[k] -= value * gradient[k] / square;
-        clamp(x);
+        swarf_contour_clamp(x);
     }
 }
 
-/* Point that the planes have in common, the nearest to `about` where they leave a choice; moved along an edge into the
- * cell when it lies on one. Returns the rank. */
-static int meet(const contour_polygon *polygon, const double about[3], double least, double out[3])
+int swarf_contour_meet(const contour_plane *planes, int count, const double about[3], double least, double out[3])
 {
     double a[3][3] = {{0}}, right[3] = {0}, value[3], vector[3][3];
-    for (int i = 0; i < polygon->count; i++) {
-        const double *n = polygon->normal[i];
-        const double away = dot(n, polygon->point[i]) - dot(n, about);
+    for (int i = 0; i < count; i++) {
+        const double *n = planes[i].normal;
+        const double away = dot(n, planes[i].point) - dot(n, about);
         for (int r = 0; r < 3; r++) {
             for (int c = 0; c < 3; c++) a[r][c] += n[r] * n[c];
             right[r] += n[r] * away;
@@ -119,14 +115,11 @@ static int outside(const double x[3])
 }
 
 /* A corner that lies in another cell is not this cell's: its edge is, or its face. */
-static int meet_inside(const contour_polygon *polygon, const double about[3], double out[3])
+static int meet_inside(const contour_plane *planes, int count, const double about[3], double out[3])
 {
-    int rank = meet(polygon, about, least_eigenvalue, out);
-    double stricter = 5 * least_eigenvalue;
-    while (rank > 1 && outside(out) && stricter < 1) {
-        rank = meet(polygon, about, stricter, out);
-        stricter *= 5;
-    }
+    int rank = swarf_contour_meet(planes, count, about, least_eigenvalue, out);
+    for (double stricter = 5 * least_eigenvalue; rank > 1 && outside(out) && stricter < 1; stricter *= 5)
+        rank = swarf_contour_meet(planes, count, about, stricter, out);
     return rank;
 }
 
@@ -139,9 +132,14 @@ int swarf_contour_vertex(const contour_polygon *polygon, double out[3])
     int rank = 1;
     if (least_dot < same_face_cosine) {
         const double middle[3] = {x[0], x[1], x[2]};
-        rank = meet_inside(polygon, middle, x);
+        contour_plane planes[12];
+        for (int i = 0; i < polygon->count; i++) {
+            memcpy(planes[i].point, polygon->point[i], sizeof planes[i].point);
+            memcpy(planes[i].normal, polygon->normal[i], sizeof planes[i].normal);
+        }
+        rank = meet_inside(planes, polygon->count, middle, x);
     }
-    if (clamp(x) || rank < 2) project(polygon, x);
+    if (swarf_contour_clamp(x) || rank < 2) project(polygon, x);
     memcpy(out, x, sizeof x);
     return rank;
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Distance to one trace, with its gradient: by the envelope theorem that of the cutter where it comes nearest.
  *
- * The same distances as the kernels take (sweep/kernel_body.h tells them), so that both agree within the band; but in
- * double and mm, helices and upright arcs as themselves. Level lines, plunges and level arcs have the least plan
- * distance as their nearest moment; on a tilted line phi is convex in time; on a curve it is convex but for the bend.
+ * The same distances as the kernels take (sweep/kernel_line.h and kernel_general.h tell them), so that both agree
+ * within the band; but in double and mm, helices and upright arcs as themselves. Level lines, plunges and level arcs
+ * have the least plan distance as their nearest moment; on a tilted line phi is convex in time; on a curve it is
+ * convex but for the bend.
  */
 #include "surface/trace.h"
 

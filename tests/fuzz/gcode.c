@@ -39,6 +39,11 @@ static swarf_gcode_options options_for(size_t size)
         options.tools = tools;
         options.tool_count = sizeof tools / sizeof *tools;
     }
+    static const swarf_gcode_diameter diameters[] = {{1, 5}, {3, 0}};
+    if (size / 40 % 2) {
+        options.diameters = diameters;
+        options.diameter_count = sizeof diameters / sizeof *diameters;
+    }
     if (size / 20 % 2)
         for (int k = 0; k < 3; k++) options.start[k] = 0.0;
     options.line_limit = 20000;

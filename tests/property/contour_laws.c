@@ -68,7 +68,10 @@ static size_t count_cuts(const swarf_mesh *mesh)
     return cuts;
 }
 
-static swarf_stock *make_random(test_random *random, double voxel)
+enum { CUTTERS = 4 };
+
+/* A random stock and its exact surface. */
+static swarf_stock *make_random(test_random *random, double voxel, swarf_surface **surface)
 {
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = voxel;
@@ -76,10 +79,20 @@ static swarf_stock *make_random(test_random *random, double voxel)
     const swarf_box box = {{offset, 0, -5}, {offset + 6, 6, 0}};
     swarf_stock *stock = NULL;
     if (!CHECK_OK(swarf_stock_create_box(&box, &options, &stock))) return NULL;
-    static const char *const cutters[] = {"flat:d=0.5,l=9", "ball:d=0.8,l=9", "chamfer:d=2,l=9,a=60", "ball:d=3,l=9"};
-    for (int i = 0; i < 4; i++) {
+    swarf_stock *first = NULL;
+    swarf_program *program = NULL;
+    swarf_tool tools[CUTTERS] = {{0}};
+    CHECK_OK(swarf_stock_copy(stock, &first));
+    CHECK_OK(swarf_program_create((double[3]){0, 0, 9}, &program));
+    CHECK_OK(swarf_program_add_operation(program, "cut"));
+    static const char *const cutters[CUTTERS] = {"flat:d=0.5,l=9", "ball:d=0.8,l=9", "chamfer:d=2,l=9,a=60",
+                                                 "ball:d=3,l=9"};
+    for (int i = 0; i < CUTTERS; i++) {
         swarf_cutter *cutter = NULL;
-        if (!CHECK_OK(swarf_cutter_parse(cutters[i], &cutter))) continue;
+        const swarf_section section = {.tool = i + 1};
+        if (!CHECK_OK(swarf_cutter_parse(cutters[i], &cutter))) exit(test_end());
+        CHECK_OK(swarf_program_set_section(program, &section));
+        tools[i] = (swarf_tool){.number = i + 1, .cutter = cutter};
         enum { PATHS = 12 };
         swarf_path paths[PATHS] = {0};
         for (int k = 0; k < PATHS; k++) {
@@ -91,9 +104,17 @@ static swarf_stock *make_random(test_random *random, double voxel)
             paths[k].start[2] = test_random_in(random, -5.5, 0.5);
             paths[k].end[2] = test_random_below(random, 2) ? paths[k].start[2] : test_random_in(random, -5.5, 0.5);
         }
-        CHECK_OK(swarf_stock_cut(stock, cutter, paths, 1 + test_random_below(random, PATHS), NULL));
-        swarf_cutter_release(cutter);
+        const size_t count = 1 + test_random_below(random, PATHS);
+        CHECK_OK(swarf_stock_cut(stock, cutter, paths, count, NULL));
+        for (size_t k = 0; k < count; k++) {
+            CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_POSITION, paths[k].start, 0, 1));
+            CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_FEED, paths[k].end, 100, 1));
+        }
     }
+    CHECK_OK(swarf_surface_create(first, program, tools, CUTTERS, NULL, surface));
+    for (int i = 0; i < CUTTERS; i++) swarf_cutter_release((swarf_cutter *)tools[i].cutter);
+    swarf_program_release(program);
+    swarf_stock_destroy(first);
     return stock;
 }
 
@@ -117,14 +138,17 @@ int main(void)
     const int count = count_text ? atoi(count_text) : 25;
     for (int i = 0; i < count; i++) {
         const double voxel = test_random_in(&random, 0.1, 0.5);
-        swarf_stock *stock = make_random(&random, voxel);
+        swarf_surface *surface = NULL;
+        swarf_stock *stock = make_random(&random, voxel, &surface);
         if (!stock) continue;
         double volume = 0;
         CHECK_OK(swarf_stock_volume(stock, &volume));
         long full_euler = 0;
-        for (int simple = 0; simple < 2; simple++) {
+        for (int kind = 0; kind < 4; kind++) {
+            const int simple = kind & 1, exact = kind >> 1;
             swarf_contour_options options = swarf_contour_options_default();
             options.error_mm = simple ? 0.1 * voxel : 0;
+            options.surface = exact ? surface : NULL;
             swarf_contour_report report;
             swarf_mesh *mesh = NULL;
             if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) continue;
@@ -135,15 +159,19 @@ int main(void)
             CHECK(report.intersections_left == 0);
             if (report.triangles < 10000) CHECK(count_cuts(mesh) == 0);
             if (!good || report.intersections_left || report.intersections_found)
-                printf("stock %d, voxel %g: %zu triangles, cut each other: %zu found, %zu left\n", i, voxel,
-                       report.triangles, report.intersections_found, report.intersections_left);
+                printf("stock %d, voxel %g: %zu triangles, %zu of %zu vertices exact, cut each other: %zu found, %zu "
+                       "left\n",
+                       i, voxel, report.triangles, report.exact_vertices, report.full_triangles / 2,
+                       report.intersections_found, report.intersections_left);
             CHECK_NEAR(topology.volume_mm3, volume, 0.25 * voxel * topology.area_mm2);
-            if (simple)
+            CHECK(!exact || 10 * report.exact_vertices > 9 * (report.full_triangles / 2));
+            if (kind)
                 CHECK(euler_number(mesh) == full_euler);
             else
                 full_euler = euler_number(mesh);
             swarf_mesh_release(mesh);
         }
+        swarf_surface_release(surface);
         swarf_stock_destroy(stock);
     }
     return test_end();

@@ -52,6 +52,10 @@ def test_options(file, tmp_path):
     for tools in (tmp_path / "t.tbl", [(1, 6.0, 10.0)]):
         program = swarf.read_gcode(main, tools=tools, start=(0, 0, 0), block_delete=True)
         assert [move[0] for move in struct.iter_unpack("=dddfIiI", program.moves)] == [0, 0, 3]
+    inch = swarf.read_gcode(main, tools=tmp_path / "t.tbl", start=(0, 0, 0), machine_unit="inch", block_delete=True)
+    assert [move[2] for move in struct.iter_unpack("=dddfIiI", inch.moves)][-1] == -254.0
+    with pytest.raises(ValueError, match="machine_unit"):
+        swarf.read_gcode(main, machine_unit="foot")
     with pytest.raises(ValueError, match="dialect"):
         swarf.read_gcode(main, dialect="french")
     with pytest.raises(ValueError, match="line_limit"):
@@ -198,3 +202,43 @@ def test_impossible_projects(tmp_path, text, says):
     path.write_text(text)
     with pytest.raises(swarf.FormatError, match=says):
         readers.read(str(path))
+
+
+COMPENSATED = "G21 G90 F100\nT1 M6\nG0 X0 Y0 Z1\nG41 G1 X0 Y10\nX20\nG40 G1 X30\nM2\n"
+
+
+def ends(text):
+    return [move[:2] for move in struct.iter_unpack("=dddfIiI", text.moves) if not math.isnan(move[0])]
+
+
+def test_the_tools_given_serve_compensation(tmp_path, capsys):
+    path = tmp_path / "side.ngc"
+    path.write_text(COMPENSATED)
+    with pytest.raises(swarf.FormatError, match="side.ngc:4:1: error: .*diameter of tool T1"):
+        swarf.read_gcode(path)
+    table = swarf.read_gcode(path, tools=[(1, 6.0, 0.0)])
+    given = swarf.read_gcode(path, diameters={1: 6.0, 2: 9.0})
+    assert ends(table) == ends(given) and ends(given)[-2] == (20.0, 13.0)
+    # the control's own table comes first, where it tells
+    assert ends(swarf.read_gcode(path, tools=[(1, 6.0, 0.0)], diameters={1: 8.0})) == ends(table)
+    assert ends(swarf.read_gcode(path, tools=[(1, 0.0, 0.0)], diameters={1: 6.0})) == ends(table)
+    for wrong in ({1: -1.0}, {-1: 1.0}, {1: math.nan}):
+        with pytest.raises(ValueError, match="diameter 1: tool"):
+            swarf.read_gcode(path, diameters=wrong)
+    assert cli.main(["check", str(path)]) == 1
+    assert "give the tool or a tool table" in capsys.readouterr().out
+    assert cli.main(["check", str(path), "--tool", "1=flat:d=6,l=20"]) == 0
+    assert cli.main(["moves", str(path), "--tool", "1=ball:d=6,l=20"]) == 0
+    assert "feed X20.000000 Y13.000000" in capsys.readouterr().out
+    assert cli.main(["simulate", str(path), "--tool", "1=flat:d=6,l=20", "--stock", "box:0,0,-5,30,20,2",
+                     "--voxel", "0.5"]) == 0
+    assert cli.main(["check", str(path), "--tool", "1=flat:d=6,l=20", "--tool", "1=flat:d=5,l=20"]) == 2
+    assert "given twice" in capsys.readouterr().err
+
+
+def test_a_camotics_project_tells_diameters(tmp_path):
+    (tmp_path / "side.ngc").write_text(COMPENSATED)
+    project = tmp_path / "side.camotics"
+    project.write_text(json.dumps({
+        "files": ["side.ngc"], "tools": {"1": {"shape": "cylindrical", "diameter": 6, "length": 20}}}))
+    assert ends(camotics.read(str(project)).program)[-2] == (20.0, 13.0)

@@ -208,3 +208,34 @@ def test_measures_of_a_cut_sphere_like_pocket():
     exact = 800 - (math.pi * 9 * 3 + 2 / 3 * math.pi * 27)
     assert shell.volume_mm3 == pytest.approx(exact, rel=1e-3)
     assert shell.genus == 0
+
+
+def test_exact_surface():
+    """A slot of 4 mm through a block: 2 x 8 x 6 mm with the edges where they are, though voxels are 0.23 mm."""
+    stock = swarf.Stock.box((0, 0, -6), (20, 8, 0), 0.23)
+    program = swarf.Program(start=(11, -5, -2))
+    program.add_operation("slot")
+    program.set_section(tool=1)
+    program.add_line((11, 13, -2), feed_mm_min=100)
+    tools = {1: swarf.Cutter("flat:d=4,l=20")}
+    surface = swarf.Surface(stock, program, tools)
+    with pytest.raises(BufferError):
+        program.add_line((0, 0, 0))
+    whole = swarf.Mesh.from_stock(stock, 0.001, surface=surface, moves=0)
+    stock.simulate(program, tools)
+    mesh = swarf.Mesh.from_stock(stock, 0.001, surface=surface)
+    assert mesh.volume == pytest.approx(20 * 8 * 6 - 4 * 8 * 2, rel=1e-6)
+    assert whole.volume == pytest.approx(20 * 8 * 6, rel=1e-6)
+    for got, wanted in zip(mesh.bounding_box, ((0, 0, -6), (20, 8, 0))):
+        assert got == pytest.approx(wanted, abs=1e-5)
+    assert mesh.triangle_count < 200 and mesh.contour.exact_vertices > 1000
+    corners = {(round(x, 4), round(y, 4), round(z, 4)) for x, y, z in mesh.vertices.tolist()}
+    assert {(9.0, 0.0, -2.0), (13.0, 8.0, 0.0), (20.0, 8.0, -6.0)} <= corners
+    rough = swarf.Mesh.from_stock(stock, 0.001)
+    assert abs(rough.volume - mesh.volume) > 0.1 and rough.contour.exact_vertices == 0
+    with pytest.raises(TypeError, match="surface: needs a Surface"):
+        swarf.Mesh.from_stock(stock, surface=stock)
+    with pytest.raises(ValueError):
+        swarf.Mesh.from_stock(stock, surface=surface, moves=2)
+    del surface
+    program.add_line((0, 0, 0))

@@ -342,7 +342,7 @@ static void test_all_codes(void)
         else
             refuse(line, line);
     }
-    refuse("G41 D1", "part.nc:1:5: error: 'D1' needs the diameter of tool T1; give a tool table");
+    refuse("G41 D1", "part.nc:1:5: error: 'D1' needs the diameter of tool T1; give the tool or a tool table");
     refuse("G76", "'G76' is a cycle of lathes; this is a milling simulation");
     refuse("G7", "diameter mode of lathes");
     refuse("G5.2", "NURBS");

@@ -251,6 +251,15 @@ static void test_files(void)
     options.parameters = parameters;
     CHECK(run_with(&options, "G0 X0 Y0 Z0\nG28") == 90);
     CHECK(run_with(&options, "G0 X0 Y0 Z0\nG53 G0 X0") == -10);
+    /* of an inch machine: lengths are, the turn of the work offset (5230) is not */
+    write_file(folder, "p.var", "5161 4\n5162 8\n5221 1\n5230 90\n", parameters, sizeof parameters);
+    options.parameter_unit_mm = 25.4;
+    CHECK_NEAR(run_with(&options, "G0 X0 Y0 Z0\nG53 G0 X0 Y0"), 0, 1e-9);
+    CHECK_NEAR(run_with(&options, "G0 X0 Y0 Z0\nG0 X#5161"), 101.6, 1e-9);
+    CHECK_NEAR(run_with(&options, "G0 X0 Y0 Z0\nG0 X#5230"), 90, 1e-9);
+    options.parameter_unit_mm = 0;
+    CHECK_FAILS(swarf_gcode_read("", 0, "t", &options, NULL, &program), SWARF_ERROR_ARGUMENT, "a unit of 0 mm");
+    options.parameter_unit_mm = 1;
     write_file(folder, "p.var", "5162 200\n5161 1\n", parameters, sizeof parameters);
     CHECK_FAILS(swarf_gcode_read("", 0, "t", &options, NULL, &program), SWARF_ERROR_FORMAT, "they must ascend");
     const char *const all[] = {main, sub, table, parameters};

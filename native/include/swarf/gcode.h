@@ -38,6 +38,12 @@ SWARF_API swarf_status swarf_gcode_tools_read(const char *path, double unit_mm, 
                                               size_t *count);
 SWARF_API void swarf_gcode_tools_free(swarf_gcode_tool *tools);
 
+/** A tool's diameter where its shape is known: for cutter compensation when no tool table tells it. */
+typedef struct swarf_gcode_diameter {
+    int32_t number;
+    double mm;
+} swarf_gcode_diameter;
+
 typedef struct swarf_gcode_options {
     size_t size;     /**< sizeof(swarf_gcode_options) */
     double start[3]; /**< where the tool stands first, mm; NAN per axis: unknown until commanded */
@@ -45,10 +51,13 @@ typedef struct swarf_gcode_options {
     int32_t block_delete;          /**< 1: lines that begin with '/' are left out */
     const swarf_gcode_tool *tools; /**< tool table; NULL: none is known, G43 of the loaded tool leads its tip */
     size_t tool_count;
-    const char *parameters; /**< LinuxCNC's parameter file (.var), mm; NULL: none, machine coordinates are unknown */
-    const char *path;       /**< folders for subroutines in files of their own, separated by ':'; NULL: none */
-    size_t line_limit;      /**< lines that loops and calls may execute beside the text itself; 0: 20 million */
-    swarf_notes *notes;     /**< what the reader has to say, the error included, is added here; may be NULL */
+    const swarf_gcode_diameter *diameters; /**< the tool table comes first; may be NULL */
+    size_t diameter_count;
+    const char *parameters;   /**< LinuxCNC's parameter file (.var); NULL: none, machine coordinates are unknown */
+    double parameter_unit_mm; /**< what its lengths are in: the machine's unit, 1 or 25.4 */
+    const char *path;         /**< folders for subroutines in files of their own, separated by ':'; NULL: none */
+    size_t line_limit;        /**< lines that loops and calls may execute beside the text itself; 0: 20 million */
+    swarf_notes *notes;       /**< what the reader has to say, the error included, is added here; may be NULL */
 } swarf_gcode_options;
 
 SWARF_API swarf_gcode_options swarf_gcode_options_default(void);

@@ -3,7 +3,7 @@
 #ifndef SWARF_MESH_H
 #define SWARF_MESH_H
 
-#include "stock.h"
+#include "surface.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,12 +21,14 @@ SWARF_API swarf_status swarf_mesh_create_stock(swarf_stock *stock, double adapti
 
 /** How a stock becomes a mesh with sharp edges. */
 typedef struct swarf_contour_options {
-    size_t size;            /**< sizeof(swarf_contour_options) */
-    double error_mm;        /**< >= 0; vertices are left out while the mesh stays this near to the full one */
-    size_t triangle_budget; /**< no more triangles than this, 0: no limit */
+    size_t size;                  /**< sizeof(swarf_contour_options) */
+    double error_mm;              /**< >= 0; vertices are left out while the mesh stays this near to the full one */
+    size_t triangle_budget;       /**< no more triangles than this, 0: no limit */
+    const swarf_surface *surface; /**< of the stock, borrowed for the call; NULL: the field alone */
+    size_t moves;                 /**< the stock is the surface after its first so many moves */
 } swarf_contour_options;
 
-/** Error 0 (every vertex), no budget. */
+/** Error 0 (every vertex), no budget, no surface; all of its moves. */
 SWARF_API swarf_contour_options swarf_contour_options_default(void);
 
 /** What making a mesh came to. */
@@ -34,6 +36,7 @@ typedef struct swarf_contour_report {
     size_t full_triangles;      /**< before vertices were left out */
     size_t triangles;           /**< in the mesh */
     size_t sharp_vertices;      /**< on edges and corners, before vertices were left out */
+    size_t exact_vertices;      /**< on the exact surface, before vertices were left out */
     size_t parted_cells;        /**< cells that the surface passes more than once */
     size_t intersections_found; /**< pairs of triangles that cut each other and were put right */
     size_t intersections_left;  /**< pairs that still do: 0 unless the surface itself touches itself */
@@ -41,8 +44,10 @@ typedef struct swarf_contour_report {
     int budget_met;             /**< 0 when error_mm stopped it above triangle_budget */
 } swarf_contour_report;
 
-/** From a stock by dual contouring: a closed, oriented 2-manifold with edges, made from the field alone, which tells
- *  faces to about a hundredth of a voxel and edges to half of one.
+/** From a stock by dual contouring: a closed, oriented 2-manifold with edges. Which voxels are material decides how it
+ *  hangs together; the surface, where it is given, decides where its vertices lie: on the true faces and edges within a
+ *  hundredth of a voxel. The field alone tells faces to about as much, but edges to half a voxel; it is used where the
+ *  surface does not have the stock's signs.
  *  `report` may be NULL. An empty stock gives an empty mesh. SWARF_ERROR_GEOMETRY: material reaches the border of the
  *  level set, which a file of another program may do. The result does not depend on the number of threads. */
 SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options *options,

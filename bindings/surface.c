@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* swarf.Surface: the exact surface of a stock and a program. Immutable, any thread. */
+#include "native.h"
+
+static PyObject *surface_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"first", "program", "tools", "progress", NULL};
+    module_state *state = state_of_type(type);
+    PyObject *first, *program, *dict, *progress = NULL;
+    swarf_tool *tools;
+    size_t tool_count;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!O!|$O:Surface", names, state->stock, &first, state->program,
+                                     &program, &PyDict_Type, &dict, &progress) ||
+        tools_read(state, dict, &tools, &tool_count))
+        return NULL;
+    program_object *held = (program_object *)Py_NewRef(program);
+    held->exports++; /* its moves must not change while the surface shows them */
+    swarf_surface *handle = NULL;
+    native_call call;
+    int failed = call_begin(&call, progress);
+    if (!failed)
+        failed = call_end(&call, state,
+                          swarf_surface_create(((stock_object *)first)->handle, held->handle, tools, tool_count,
+                                               &call.progress, &handle));
+    tools_free(tools, tool_count);
+    surface_object *self = failed ? NULL : (surface_object *)PyType_GenericAlloc(type, 0);
+    if (!self) {
+        swarf_surface_release(handle);
+        held->exports--;
+        Py_DECREF((PyObject *)held);
+        return NULL;
+    }
+    self->handle = handle;
+    self->program = held;
+    return (PyObject *)self;
+}
+
+static void surface_dealloc(PyObject *object)
+{
+    surface_object *self = (surface_object *)object;
+    swarf_surface_release(self->handle);
+    self->program->exports--;
+    Py_DECREF((PyObject *)self->program);
+    object_free(object);
+}
+
+static PyType_Slot surface_slots[] = {
+    {Py_tp_doc, "Surface(first, program, tools, *, progress=None)\n--\n\n"
+                "The surface that a program makes of the stock `first` (as it is now, not kept), exactly: the first\n"
+                "shape and the sweeps of the cutters in `tools`, a dict {number: Cutter}. The program can no longer "
+                "be\n"
+                "added to while the surface lives. Immutable, any thread."},
+    {Py_tp_new, surface_new},
+    {Py_tp_dealloc, surface_dealloc},
+    {0, NULL},
+};
+
+PyType_Spec surface_spec = {
+    .name = "swarf.Surface",
+    .basicsize = sizeof(surface_object),
+    .flags = Py_TPFLAGS_DEFAULT | Py_TPFLAGS_IMMUTABLETYPE,
+    .slots = surface_slots,
+};

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Part of the kernels (kernel_body.h): which tracks matter to a block, by bounds of their distance over all of it. */
+#ifndef SWARF_SWEEP_KERNEL_CULL_H
+#define SWARF_SWEEP_KERNEL_CULL_H
+
+#include "sweep/kernel_plan.h"
+
+/* Bounds over a block of the distance to a swept cylinder, for sixteen tracks, and of the height of its bottom.
+ * `covers` is greater than -SWARF_HALF_WIDTH unless side and top leave the whole block to the bottom. */
+struct shaft_bounds {
+    lanes least, most;
+    lanes floor_least, floor_most, covers;
+};
+
+struct sixteen {
+    lanes base_x, base_y, ux, uy, s0, s1, m, im, z, rise; /* s0, s1, line_s: 0 for arcs */
+    lanes dx, dy, dz, t0, t1;                             /* balls only */
+    lanes x, y, s, w, line_s;                             /* middle of the block relative to the base */
+    lanes arc;                                            /* plan distance of arcs */
+    mask is_arc;
+};
+
+INLINE lanes shaft_lateral(const struct sixteen *t, float radius)
+{
+    const lanes beyond = t->s - clamped(t->s, t->s0, t->s1);
+    const lanes line = root(beyond * beyond + t->w * t->w);
+    return pick(t->is_arc, t->arc, line) - radius;
+}
+
+/* Lower bound, for the enclosing cylinder (radius, lo .. hi above the tip): beside it, below its lowest or above its
+ * highest point, or beyond one of the two slanted planes that hold its bottom and top. */
+INLINE void shaft_least(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi,
+                        struct shaft_bounds *bounds)
+{
+    const lanes bottom = t->z + lo, top = t->z + hi + t->rise;
+    const lanes lateral = shaft_lateral(t, radius) - reach;
+    const lanes lowest = t->m * t->s0 + bottom;
+    const lanes below = lowest - (b->z + b->half_z), above = (b->z - b->half_z) - (t->m * t->s1 + top);
+    const lanes support = t->m * t->im * reach + t->im * b->half_z;
+    const lanes plane = t->m * (t->line_s - radius) + bottom;
+    const lanes under = (plane - b->z) * t->im - support;
+    const lanes over = (all(b->z) - (t->m * (t->line_s + radius) + top)) * t->im - support;
+    bounds->least = maximum(maximum(lateral, maximum(below, above)), maximum(under, over));
+    bounds->floor_least = maximum(lowest, plane - t->m * reach);
+}
+
+/* Upper bound, for a cylinder inside: the deepest point of the block's side, bottom and top. */
+INLINE void shaft_most(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi,
+                       struct shaft_bounds *bounds)
+{
+    const lanes bottom = t->z + lo, top = t->z + hi + t->rise;
+    const lanes lateral = shaft_lateral(t, radius) + reach;
+    const lanes aside = maximum(t->w, all(0) - t->w) + reach;
+    const lanes half = root(maximum(all(0), all(radius * radius) - aside * aside)); /* half chord at the far side */
+    const lanes highest_bottom = t->m * clamped(t->line_s + reach - half, t->s0, t->s1) + bottom;
+    const lanes lowest_top = t->m * clamped(t->line_s - reach + half, t->s0, t->s1) + top;
+    lanes below = highest_bottom - (b->z - b->half_z), above = (b->z + b->half_z) - lowest_top;
+    below = pick(less(below, all(0)), below * t->im, below);
+    above = pick(less(above, all(0)), above * t->im, above);
+    bounds->most = maximum(lateral, maximum(below, above));
+    bounds->floor_most = highest_bottom;
+    bounds->covers = maximum(lateral, above);
+}
+
+/* Both bounds for balls: all points within the radius of a strip (see ball_line()), below the top. `reach` to vertical
+ * edges of the block, `corner` to its corners. */
+INLINE void ball_bounds(const swarf_body *body, const struct sixteen *t, const swarf_block *b, float reach,
+                        struct shaft_bounds *bounds)
+{
+    const float corner = sqrtf(reach * reach + b->half_z * b->half_z);
+    const lanes ez = all(b->z) - t->z - body->core_lo;
+    const lanes on = clamped(t->line_s, t->s0, t->s1), beyond = t->line_s - on;
+    const lanes beside = pick(t->is_arc, t->arc * t->arc, beyond * beyond + t->w * t->w);
+    const lanes q = clamped(t->x * t->dx + t->y * t->dy + ez * t->dz, t->t0, t->t1);
+    const lanes fx = t->x - q * t->dx, fy = t->y - q * t->dy, fz = ez - q * t->dz;
+    const lanes under = pick(t->is_arc, beside + ez * ez, fx * fx + fy * fy + fz * fz);
+    const lanes strip = root(pick(less(t->m * on, ez), beside, under)) - body->radius;
+    const lanes lateral = root(beside) - body->radius;
+    const lanes top = t->z + body->z_hi + t->rise;
+    const lanes above = (b->z - b->half_z) - (t->m * t->s1 + top);
+    const lanes over =
+        (all(b->z) - (t->m * (t->line_s + body->radius) + top)) * t->im - (t->m * t->im * reach + t->im * b->half_z);
+    bounds->least = maximum(maximum(strip - corner, lateral - reach), maximum(above, over));
+    /* wholly above the centre's line only the place in the plane counts */
+    const lanes below = t->m * clamped(t->line_s + reach, t->s0, t->s1) - (ez - b->half_z);
+    const lanes near = pick(less(below, all(0)), lateral + reach, strip + corner);
+    lanes close = (b->z + b->half_z) - (t->m * clamped(t->line_s - reach, t->s0, t->s1) + top);
+    close = pick(less(close, all(0)), close * t->im, close);
+    bounds->most = maximum(minimum(near, strip + corner), close);
+    bounds->floor_least = all(0);
+    bounds->floor_most = bounds->covers = all(far_away);
+}
+
+INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, int ball)
+{
+    float *const *f = c->field;
+    struct sixteen t;
+    t.base_x = gather(f[COLUMN_X], at);
+    t.base_y = gather(f[COLUMN_Y], at);
+    t.ux = gather(f[COLUMN_UX], at);
+    t.uy = gather(f[COLUMN_UY], at);
+    t.m = gather(f[COLUMN_M], at);
+    t.im = gather(f[COLUMN_IM], at);
+    t.z = gather(f[COLUMN_Z], at);
+    t.rise = gather(f[COLUMN_RISE], at);
+    t.s0 = gather(f[COLUMN_S0], at);
+    t.s1 = gather(f[COLUMN_S1], at);
+    t.is_arc = less(all(0), all(0));
+    if (c->arcs) { /* their fields hold other things; what is left of a line's formulas must come to nothing */
+        float arc[LANES];
+        for (int k = 0; k < LANES; k++) arc[k] = c->kind[at[k]] & TRACK_ARC ? 1 : 0;
+        t.is_arc = less(all(0.5f), load(arc));
+        t.s0 = pick(t.is_arc, all(0), t.s0);
+        t.s1 = pick(t.is_arc, all(0), t.s1);
+    }
+    if (ball) {
+        t.dx = gather(f[COLUMN_DX], at);
+        t.dy = gather(f[COLUMN_DY], at);
+        t.dz = gather(f[COLUMN_DZ], at);
+        t.t0 = gather(f[COLUMN_T0], at);
+        t.t1 = gather(f[COLUMN_T1], at);
+    }
+    return t;
+}
+
+/* Place the tracks relative to a block. */
+INLINE void face_block(const swarf_column *c, const int32_t *at, const swarf_block *b, struct sixteen *t)
+{
+    t->x = all(b->x) - t->base_x;
+    t->y = all(b->y) - t->base_y;
+    t->s = t->x * t->ux + t->y * t->uy;
+    t->w = t->y * t->ux - t->x * t->uy;
+    t->line_s = t->s;
+    t->arc = all(0);
+    if (!c->arcs) return;
+    float plan[LANES];
+    for (int k = 0; k < LANES; k++)
+        plan[k] = c->kind[at[k]] & TRACK_ARC ? arc_distance(c, at[k], all(b->x), all(b->y))[0] : 0;
+    t->arc = load(plan);
+    t->line_s = pick(t->is_arc, all(0), t->s);
+}
+
+/* What is known of one block while its list is made. */
+struct culling {
+    lanes best;
+    size_t kept, champion;
+    float champion_floor;
+};
+
+/* Look at up to sixteen tracks; 1 when one of them covers the block. */
+INLINE int cull_sixteen(const swarf_body *body, const swarf_column *c, const int32_t *at, unsigned valid,
+                        const swarf_block *b, struct sixteen *t, struct culling *state, int32_t *out, float *bound,
+                        float *floor)
+{
+    const float reach = b->half * 1.41421357f; /* from the middle of the block to its vertical edges */
+    struct shaft_bounds bounds;
+    face_block(c, at, b, t);
+    if (body->kind == SWARF_BODY_BALL) {
+        ball_bounds(body, t, b, reach, &bounds);
+    } else {
+        shaft_least(t, b, reach, body->radius, body->z_lo, body->z_hi, &bounds);
+        shaft_most(t, b, reach, body->core_radius, body->core_lo, body->core_hi, &bounds);
+    }
+    if (bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
+    unsigned keep = bits(less(bounds.least, all(SWARF_HALF_WIDTH))) & valid;
+    if (!keep) return 0;
+    float lows[LANES], highs[LANES], floors[LANES], ceilings[LANES];
+    store(lows, bounds.least);
+    store(highs, bounds.most);
+    store(floors, bounds.floor_least);
+    store(ceilings, pick(less(bounds.covers, all(-SWARF_HALF_WIDTH)), bounds.floor_most, all(far_away)));
+    for (; keep; keep &= keep - 1) {
+        const int lane = __builtin_ctz(keep);
+        out[state->kept] = at[lane];
+        bound[state->kept] = lows[lane];
+        floor[state->kept] = floors[lane];
+        if (ceilings[lane] < state->champion_floor) {
+            state->champion_floor = ceilings[lane];
+            state->champion = state->kept;
+        }
+        state->kept++;
+        state->best = minimum(state->best, all(highs[lane]));
+    }
+    return 0;
+}
+
+/* A track that is everywhere farther than another one is anywhere does not matter; nor does, of cylinders, one whose
+ * bottom is nowhere below that of another which covers the block from side to side. */
+static size_t drop_dominated(const swarf_body *body, const struct culling *state, int32_t *out, const float *bound,
+                             const float *floor)
+{
+    size_t left = state->kept;
+    if (left > 1) {
+        const float limit = least_lane(state->best);
+        const int flat = body->kind == SWARF_BODY_CYLINDER;
+        left = 0;
+        for (size_t i = 0; i < state->kept; i++) {
+            const int matters = bound[i] <= limit && !(flat && floor[i] >= state->champion_floor);
+            if (matters || i == state->champion) out[left++] = out[i];
+        }
+    }
+    for (int i = 0; i < COLUMN_SLACK; i++) out[left + (size_t)i] = left ? out[0] : 0;
+    return left;
+}
+
+static unsigned cull(const swarf_body *body, const swarf_column *c, const int32_t *in, size_t count,
+                     const swarf_block *blocks, size_t block_count, int32_t *const *out, size_t *out_count)
+{
+    struct culling state[BLOCKS_AT_ONCE];
+    for (size_t b = 0; b < block_count; b++)
+        state[b] = (struct culling){.best = all(far_away), .champion = SIZE_MAX, .champion_floor = far_away};
+    unsigned covered = 0;
+    for (size_t i = 0; i < count; i += LANES) {
+        const unsigned valid = count - i >= LANES ? 0xffffu : (1u << (count - i)) - 1;
+        struct sixteen t = gather_tracks(c, in + i, body->kind == SWARF_BODY_BALL);
+        for (size_t b = 0; b < block_count; b++)
+            if (!(covered >> b & 1) &&
+                cull_sixteen(body, c, in + i, valid, &blocks[b], &t, &state[b], out[b], c->bound[b], c->floor[b]))
+                covered |= 1u << b;
+    }
+    for (size_t b = 0; b < block_count; b++)
+        if (!(covered >> b & 1)) out_count[b] = drop_dominated(body, &state[b], out[b], c->bound[b], c->floor[b]);
+    return covered;
+}
+
+#endif

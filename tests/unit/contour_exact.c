@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Meshes on the exact surface: every cutter on slots, ramps, arcs and crossing cuts against the oracle's distances and
+ * the closed forms of edges; what OpenVDB's mesher makes of the same stock is printed beside. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cases.h"
+
+static const double voxel = 0.2, pi = 3.14159265358979323846;
+static const swarf_box block = {{-7.03, -7.07, -5.02}, {7.05, 7.01, 0.01}};
+
+enum { MOST_PATHS = 4, MOST_SAMPLED = 500, MOST_EDGE_POINTS = 20000 };
+
+typedef struct part {
+    oracle_body body;
+    swarf_path paths[MOST_PATHS];
+    int count;
+} part;
+
+/* Level sweeps in closed form: a cutter's distance never falls with the plan distance from its axis, so that the least
+ * plan distance decides. */
+static double sweep_distance(const part *t, int i, const double p[3])
+{
+    const swarf_path *path = &t->paths[i];
+    const double away = hypot(p[0] - path->start[0], p[1] - path->start[1]) - t->body.radius;
+    if (path->start[0] == path->end[0] && path->start[1] == path->end[1] && away > 0.1) return away; /* far enough */
+    if (path->start[2] != path->end[2]) return oracle_distance(&t->body, path, p);
+    double tip[3], s;
+    if (path->is_arc) {
+        const double *c = path->arc.centre;
+        const double from = atan2(path->start[1] - c[1], path->start[0] - c[0]);
+        s = fmod(atan2(p[1] - c[1], p[0] - c[0]) - from + 4 * pi, 2 * pi) / path->arc.angle_rad;
+    } else {
+        const double along[2] = {path->end[0] - path->start[0], path->end[1] - path->start[1]};
+        s = ((p[0] - path->start[0]) * along[0] + (p[1] - path->start[1]) * along[1]) /
+            (along[0] * along[0] + along[1] * along[1]);
+    }
+    double least = INFINITY;
+    const double moments[3] = {0, 1, fmin(fmax(s, 0), 1)};
+    for (int k = 0; k < 3; k++) {
+        oracle_tip(path, moments[k], tip);
+        least = fmin(least, hypot(p[0] - tip[0], p[1] - tip[1]));
+    }
+    return oracle_meridian(&t->body, least, p[2] - path->start[2]);
+}
+
+/* The true surface's distance with its sign: of the block less the sweeps. */
+static double true_value(const part *t, const double p[3])
+{
+    double value = -INFINITY;
+    for (int k = 0; k < 3; k++) value = fmax(value, fmax(block.lo[k] - p[k], p[k] - block.hi[k]));
+    for (int i = 0; i < t->count; i++) value = fmax(value, -sweep_distance(t, i, p));
+    return value;
+}
+
+/* Whether two sweeps come near, so that edges between them may. */
+static int near_two(const part *t, const double p[3])
+{
+    int count = 0;
+    for (int i = 0; i < t->count; i++) count += sweep_distance(t, i, p) < 2 * voxel;
+    return count > 1;
+}
+
+static int true_normal(const part *t, const double p[3], double normal[3])
+{
+    const double step = 1e-4;
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double a[3] = {p[0], p[1], p[2]}, b[3] = {p[0], p[1], p[2]};
+        a[k] -= step;
+        b[k] += step;
+        normal[k] = (true_value(t, b) - true_value(t, a)) / (2 * step);
+        square += normal[k] * normal[k];
+    }
+    for (int k = 0; k < 3; k++) normal[k] /= sqrt(square);
+    return fabs(square - 1) < 1e-3;
+}
+
+/* Points of the true edges that level cuts leave: where corners of the meridian went, and the rim at the block's top.
+ * At height z the wall is the path, offset by the cutter's radius there. */
+typedef struct edges {
+    double point[MOST_EDGE_POINTS][3];
+    int count;
+} edges;
+
+static void add_offset(const part *t, int path, double radius, double z, edges *out)
+{
+    const swarf_path *p = &t->paths[path];
+    const double length = oracle_length(p), step = 0.05 * voxel;
+    const int along = (int)(length / step * 1.7) + 1, around = (int)(pi * radius / step) + 1;
+    for (int i = 0; i < 2 * along + 2 * around; i++) {
+        double tip[3], ahead[3], behind[3];
+        const int cap = i >= 2 * along ? 1 + (i - 2 * along) / around : 0;
+        const double s = cap ? cap - 1 : (double)(i / 2) / along;
+        oracle_tip(p, s, tip);
+        oracle_tip(p, s + 1e-6, ahead);
+        oracle_tip(p, s - 1e-6, behind);
+        const double heading = atan2(ahead[1] - behind[1], ahead[0] - behind[0]);
+        const double turn = !cap ? (i & 1 ? 0.5 : -0.5) * pi : pi * ((double)((i - 2 * along) % around) / around - 0.5);
+        const double angle = heading + turn + (cap == 1 ? pi : 0);
+        const double q[3] = {tip[0] + radius * cos(angle), tip[1] + radius * sin(angle), z};
+        double normal[3]; /* of none where faces meet */
+        if (out->count == MOST_EDGE_POINTS || near_two(t, q) || fabs(true_value(t, q)) > 1e-6 ||
+            true_normal(t, q, normal))
+            continue;
+        memcpy(out->point[out->count++], q, sizeof q);
+    }
+}
+
+static void edge_end(const oracle_edge *edge, int last, double direction[2])
+{
+    direction[0] = edge->to[0] - edge->from[0];
+    direction[1] = edge->to[1] - edge->from[1];
+    if (edge->radius > 0) {
+        const double angle = edge->start_rad + (last ? edge->turn_rad : 0), way = edge->turn_rad > 0 ? 1 : -1;
+        direction[0] = -way * sin(angle);
+        direction[1] = way * cos(angle);
+    }
+}
+
+static void find_edges(const part *t, const swarf_cutter *cutter, edges *out)
+{
+    out->count = 0;
+    for (int path = 0; path < t->count; path++) {
+        const double z = t->paths[path].start[2];
+        if (t->paths[path].end[2] != z) continue;
+        const double rim = swarf_cutter_radius_at(cutter, SWARF_PART_FLUTES, block.hi[2] - z);
+        if (rim > 0) add_offset(t, path, rim, block.hi[2], out);
+        for (int i = 0; i < t->body.part_begin[t->body.parts]; i++)
+            for (int j = 0; j < t->body.part_begin[t->body.parts]; j++) {
+                const oracle_edge *a = &t->body.edge[i], *b = &t->body.edge[j];
+                double before[2], after[2];
+                if (i == j || hypot(a->to[0] - b->from[0], a->to[1] - b->from[1]) > 1e-9 || b->from[0] < 1e-9) continue;
+                edge_end(a, 1, before);
+                edge_end(b, 0, after);
+                const double cosine = (before[0] * after[0] + before[1] * after[1]) /
+                                      (hypot(before[0], before[1]) * hypot(after[0], after[1]));
+                if (cosine < cos(10 * pi / 180)) add_offset(t, path, b->from[0], z + b->from[1], out);
+            }
+    }
+}
+
+typedef struct figures {
+    double off;      /* greatest distance of a vertex to the true surface, in voxels */
+    double edge;     /* the same of vertices whose cell an edge passes, to the edge */
+    double edge_bad; /* share of those above 0.02 voxels */
+    double normal;   /* greatest angle of a triangle to the flat face it is on, degrees */
+    int edge_count;
+} figures;
+
+static int cell_of(const double p[3])
+{
+    int cell = 0;
+    for (int k = 0; k < 3; k++) cell = cell * 100 + (int)floor((p[k] - block.lo[k]) / voxel - 0.5) + 10;
+    return cell;
+}
+
+typedef struct in_cell {
+    int cell, first, count;
+} in_cell;
+
+static int by_cell(const void *a, const void *b)
+{
+    const int x = cell_of(a), y = cell_of(b);
+    return (x > y) - (x < y);
+}
+
+/* Vertices in cells through which an edge goes for half a voxel at least, against that edge. */
+static void measure_edges(const swarf_triangles *t, edges *e, figures *out)
+{
+    if (e->count == 0) return;
+    qsort(e->point, (size_t)e->count, sizeof *e->point, by_cell);
+    int bad = 0;
+    for (size_t i = 0; i < t->vertex_count; i++) {
+        const double p[3] = {t->xyz[3 * i], t->xyz[3 * i + 1], t->xyz[3 * i + 2]};
+        const int cell = cell_of(p);
+        int lo = 0, hi = e->count;
+        while (lo < hi) {
+            const int middle = (lo + hi) / 2;
+            if (cell_of(e->point[middle]) < cell)
+                lo = middle + 1;
+            else
+                hi = middle;
+        }
+        double least = INFINITY;
+        int count = 0;
+        for (; lo < e->count && cell_of(e->point[lo]) == cell; lo++, count++) {
+            const double *q = e->point[lo];
+            least = fmin(least,
+                         (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
+        }
+        if (count < 10) continue; /* points lie at most 0.05 voxels apart */
+        const double away = sqrt(fmax(0, least - 0.025 * 0.025 * voxel * voxel)) / voxel;
+        out->edge = fmax(out->edge, away);
+        out->edge_count++;
+        bad += away > 0.02;
+    }
+    out->edge_bad = out->edge_count ? (double)bad / out->edge_count : 0;
+}
+
+static figures measure(const part *truth, const swarf_mesh *mesh, edges *e, test_random *random)
+{
+    figures out = {0};
+    const swarf_triangles t = swarf_mesh_triangles(mesh);
+    for (int i = 0; i < MOST_SAMPLED; i++) {
+        const float *at = t.xyz + 3 * test_random_below(random, t.vertex_count);
+        const double p[3] = {at[0], at[1], at[2]};
+        out.off = fmax(out.off, fabs(true_value(truth, p)) / voxel);
+    }
+    for (int i = 0; i < MOST_SAMPLED / 4; i++) {
+        const uint32_t *v = t.index + 3 * test_random_below(random, t.triangle_count);
+        double corner[3][3], middle[3], n[3], true_n[3], at_corner[3], size = 0, cosine = 0;
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; c < 3; c++) corner[k][c] = t.xyz[3 * (size_t)v[k] + (size_t)c];
+        for (int c = 0; c < 3; c++) middle[c] = (corner[0][c] + corner[1][c] + corner[2][c]) / 3;
+        for (int c = 0; c < 3; c++) {
+            const int a = (c + 1) % 3, b = (c + 2) % 3;
+            n[c] = (corner[1][a] - corner[0][a]) * (corner[2][b] - corner[0][b]) -
+                   (corner[1][b] - corner[0][b]) * (corner[2][a] - corner[0][a]);
+            size += n[c] * n[c];
+        }
+        int smooth = true_normal(truth, middle, true_n);
+        for (int k = 0; k < 3; k++) { /* on a flat face: elsewhere triangles are chords */
+            double towards[3];
+            for (int c = 0; c < 3; c++) towards[c] = corner[k][c] + 0.1 * (middle[c] - corner[k][c]);
+            smooth &= true_normal(truth, towards, at_corner);
+            smooth &=
+                at_corner[0] * true_n[0] + at_corner[1] * true_n[1] + at_corner[2] * true_n[2] > cos(0.5 * pi / 180);
+        }
+        if (!smooth || size < 1e-4 * voxel * voxel * voxel * voxel) continue;
+        for (int c = 0; c < 3; c++) cosine += n[c] / sqrt(size) * true_n[c];
+        out.normal = fmax(out.normal, acos(fmin(cosine, 1)) * 180 / pi);
+    }
+    measure_edges(&t, e, &out);
+    return out;
+}
+
+enum { THREAD_MILL = 11 };
+
+typedef enum motion { SLOT, RAMP, ARC, CROSS, MOTIONS } motion;
+static const char *const motion_names[MOTIONS] = {"slot", "ramp", "arc", "crossing slots"};
+
+static void make_paths(motion m, double depth, part *out)
+{
+    out->count = m == CROSS ? 4 : 1;
+    switch (m) {
+    case SLOT: out->paths[0] = oracle_line(-3.1, -2.2, -depth, 2.7, 1.9, -depth); break;
+    case RAMP: out->paths[0] = oracle_line(-3.1, -1.2, -0.2, 3.3, 0.9, -depth - 1); break;
+    case ARC:
+        out->paths[0] =
+            oracle_arc((double[3]){3.2, 0.1, -depth}, (double[3]){0.07, 0.1, -depth}, SWARF_PLANE_XY, 3.9, 0);
+        break;
+    default:
+        out->paths[0] = oracle_line(-3.1, -2.2, -depth, 2.7, 1.9, -depth);
+        out->paths[1] = oracle_line(2.7, 1.9, -depth, 2.7, 1.9, 7);
+        out->paths[2] = oracle_line(-2.9, 2.4, 7, -2.9, 2.4, -depth - 0.53);
+        out->paths[3] = oracle_line(-2.9, 2.4, -depth - 0.53, 3.3, -1.3, -depth - 0.53);
+    }
+}
+
+static swarf_program *make_program(const part *t)
+{
+    swarf_program *program = NULL;
+    const swarf_section section = {.tool = 1};
+    CHECK_OK(swarf_program_create(t->paths[0].start, &program));
+    CHECK_OK(swarf_program_add_operation(program, "cut"));
+    CHECK_OK(swarf_program_set_section(program, &section));
+    for (int i = 0; i < t->count; i++) {
+        const swarf_path *path = &t->paths[i];
+        if (i > 0 && memcmp(path->start, t->paths[i - 1].end, sizeof path->start) != 0) /* above the block */
+            CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_RAPID, path->start, 0, 1));
+        if (path->is_arc)
+            CHECK_OK(swarf_program_add_arc(program, path->end, path->arc.centre, (swarf_plane)path->arc.plane,
+                                           path->arc.angle_rad > 0, 1, 100, 1));
+        else
+            CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_FEED, path->end, 100, 1));
+    }
+    return program;
+}
+
+static void check_part(int index, motion m, test_random *random)
+{
+    static edges truth_edges;
+    const char *name;
+    swarf_cutter *cutter = case_cutter(index, &name);
+    part truth = {.body = oracle_body_of(cutter, SWARF_PART_FLUTES)};
+    make_paths(m, 1.37, &truth);
+    swarf_program *program = make_program(&truth);
+    swarf_stock_options stock_options = swarf_stock_options_default();
+    stock_options.voxel_mm = voxel;
+    swarf_stock *stock = NULL;
+    swarf_surface *surface = NULL;
+    swarf_mesh *mesh = NULL, *uniform = NULL;
+    swarf_contour_report report;
+    const swarf_tool tool = {1, 0, cutter};
+    CHECK_OK(swarf_stock_create_box(&block, &stock_options, &stock));
+    CHECK_OK(swarf_surface_create(stock, program, &tool, 1, NULL, &surface));
+    const size_t moves = swarf_program_move_count(program);
+    for (size_t i = 0; i < moves; i++) {
+        swarf_path path;
+        CHECK_OK(swarf_program_path(program, i, &path));
+        CHECK_OK(swarf_stock_cut(stock, cutter, &path, 1, NULL));
+    }
+    swarf_contour_options options = swarf_contour_options_default();
+    options.surface = surface;
+    if (CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report)) &&
+        CHECK_OK(swarf_mesh_create_stock(stock, 0, NULL, &uniform))) {
+        truth_edges.count = 0;
+        if (m != RAMP) find_edges(&truth, cutter, &truth_edges);
+        const figures f = measure(&truth, mesh, &truth_edges, random),
+                      v = measure(&truth, uniform, &truth_edges, random);
+        printf("%-30s %-15s vertices off %.5f (OpenVDB %.3f) voxels; %4d at edges off %.4f (%.3f), %.4f above 0.02; "
+               "normals %.2f (%.2f) degrees; %zu of %zu exact, %zu cut\n",
+               name, motion_names[m], f.off, v.off, f.edge_count, f.edge, v.edge, f.edge_bad, f.normal, v.normal,
+               report.exact_vertices, swarf_mesh_triangles(mesh).vertex_count, report.intersections_found);
+        const swarf_topology topology = swarf_mesh_topology(mesh);
+        CHECK(topology.closed && !topology.nonmanifold_edges && !topology.misoriented_edges && !topology.degenerate);
+        CHECK(report.intersections_left == 0);
+        CHECK(f.off <= 0.01);
+        CHECK(f.normal <= 1);
+        /* where two edges pass one cell its vertex can only be on one; the roots of the thread are two all along */
+        if (index != THREAD_MILL) CHECK(f.edge_bad * f.edge_count <= 2 + 0.02 * f.edge_count);
+        if (v.edge_count > 0) CHECK(v.edge_bad > 0.5);
+    }
+    swarf_mesh_release(mesh);
+    swarf_mesh_release(uniform);
+    swarf_surface_release(surface);
+    swarf_stock_destroy(stock);
+    swarf_program_release(program);
+    swarf_cutter_release(cutter);
+}
+
+int main(void)
+{
+    test_random random = test_random_begin(41);
+    for (int index = 0; index < CASE_CUTTERS; index++)
+        for (int m = 0; m < MOTIONS; m++) check_part(index, (motion)m, &random);
+    return test_end();
+}
