@@ -113,7 +113,8 @@ static int module_exec(PyObject *module)
                    add_type(module, &check_spec, &state->check, 0) || add_type(module, &solid_spec, &state->solid, 0) ||
                    add_type(module, &deviation_spec, &state->deviation, 0) ||
                    add_sequence(module, &shell_desc, &state->shell) ||
-                   add_sequence(module, &contour_desc, &state->contour)
+                   add_sequence(module, &contour_desc, &state->contour) ||
+                   add_type(module, &history_spec, &state->history, 0) || add_sequence(module, &held_desc, &state->held)
                ? -1
                : 0;
 }
@@ -141,6 +142,8 @@ static int module_traverse(PyObject *module, visitproc visit, void *arg)
     Py_VISIT(state->deviation);
     Py_VISIT(state->shell);
     Py_VISIT(state->contour);
+    Py_VISIT(state->history);
+    Py_VISIT(state->held);
     Py_VISIT(state->error);
     Py_VISIT(state->format_error);
     Py_VISIT(state->geometry_error);
@@ -172,6 +175,8 @@ static int module_clear(PyObject *module)
     Py_CLEAR(state->deviation);
     Py_CLEAR(state->shell);
     Py_CLEAR(state->contour);
+    Py_CLEAR(state->history);
+    Py_CLEAR(state->held);
     Py_CLEAR(state->error);
     Py_CLEAR(state->format_error);
     Py_CLEAR(state->geometry_error);

@@ -38,6 +38,8 @@ typedef struct module_state {
     PyTypeObject *deviation;
     PyTypeObject *shell;
     PyTypeObject *contour;
+    PyTypeObject *history;
+    PyTypeObject *held;
     PyTypeObject *pick;
     PyObject *error; /* exceptions, see error.c */
     PyObject *format_error;
@@ -150,6 +152,11 @@ int tools_read(module_state *state, PyObject *dict, swarf_tool **out, size_t *co
 void tools_free(swarf_tool *tools, size_t count);
 extern const char stock_simulate_doc[];
 PyObject *stock_simulate(PyObject *self, PyObject *args, PyObject *keywords);
+
+/* ---- history.c ---- */
+
+extern PyType_Spec history_spec;
+extern PyStructSequence_Desc held_desc;
 
 /* ---- picture.c ---- */
 

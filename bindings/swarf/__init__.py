@@ -27,6 +27,8 @@ from ._native import (
     Finding,
     FormatError,
     GeometryError,
+    Held,
+    History,
     Mesh,
     Pick,
     Picture,
@@ -55,9 +57,9 @@ from .verify import Verification, verify
 __version__ = version()
 
 __all__ = [
-    "BusyError", "Camera", "Cancelled", "Check", "CheckFinding", "Cluster", "Comparison", "Contour", "Cutter", "Deviation",
-    "Error", "Finding", "FormatError", "GeometryError", "Job", "Mesh", "Pick", "Picture", "Program", "Result",
-    "Scene", "Shell", "Simulation", "Solid", "Stock", "Surface", "Verification", "compare_place", "compare_volume",
-    "deviation_colours", "isa", "measure_deviation", "memory_peak", "read_gcode", "set_threads", "simulate",
-    "threads", "verify", "version",
+    "BusyError", "Camera", "Cancelled", "Check", "CheckFinding", "Cluster", "Comparison", "Contour", "Cutter",
+    "Deviation", "Error", "Finding", "FormatError", "GeometryError", "Held", "History", "Job", "Mesh", "Pick",
+    "Picture", "Program", "Result", "Scene", "Shell", "Simulation", "Solid", "Stock", "Surface", "Verification",
+    "compare_place", "compare_volume", "deviation_colours", "isa", "measure_deviation", "memory_peak", "read_gcode", "set_threads",
+    "simulate", "threads", "verify", "version",
 ]

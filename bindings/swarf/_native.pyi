@@ -503,6 +503,45 @@ class Scene:
     ) -> Optional[Pick]:
         """The Pick at a place of the picture (x to the right and y upwards, -1 .. 1), or None where nothing is."""
 
+class Held(NamedTuple):
+    """What a History holds, in bytes."""
+
+    bytes: int
+    first_bytes: int
+    record_bytes: int
+    keyframe_bytes: int
+    record_count: int
+    keyframe_count: int
+    oldest: int
+
+@final
+class History:
+    """A stock that can stand at any move of a program, forward by cutting, back by undoing; tools as in
+    Stock.simulate(). It stands before the first move. A position has one content, to the bit, whichever way it is
+    reached. memory_limit: bytes for what is kept, besides a copy of the first stock; 0: a quarter of what is free. The
+    program cannot be changed while the history lives. A second thread gets BusyError."""
+
+    def __new__(
+        cls, stock: Stock, program: Program, tools: dict[int, Cutter], *, memory_limit: int = 0
+    ) -> History: ...
+    def seek(self, move: int, fraction: float = 0.0, *, progress: Progress = None) -> None:
+        """Make the stock what it is after the first ``move`` moves and a part, 0 .. 1, of the next one's path.
+        Cancelling leaves it between moves, where ``move`` says. ValueError: no such position, or the stock was changed
+        by others."""
+    def approach(self, move: int, fraction: float = 0.0, *, progress: Progress = None) -> bool:
+        """Go on towards there by one batch of at most 4096 moves -> whether it is there."""
+    def held(self, /) -> Held:
+        """What it holds: a Held."""
+    @property
+    def stock(self) -> Stock:
+        """The Stock: read it, draw it, measure it, and let nothing else cut it."""
+    @property
+    def move(self) -> int:
+        """Moves that are done."""
+    @property
+    def fraction(self) -> float:
+        """Part of the next move that is done, 0 .. 1."""
+
 class Finding(NamedTuple):
     """Something the simulation noticed."""
 
