@@ -102,7 +102,7 @@ static swarf_status keep_slot(const struct cut_work *work, int32_t x, int32_t y,
 {
     if (!work->undo) return SWARF_OK;
     const int32_t column = x / COLUMN_LEAVES * work->columns_y + y / COLUMN_LEAVES;
-    return swarf_undo_keep(work->undo, column, place.node, place.slot, before, after, work->layout->background);
+    return swarf_undo_keep(work->undo, column, place.node, place.slot, before, after);
 }
 
 static swarf_status remove_cube(const struct cut_work *work, struct touch *touch, int32_t x, int32_t y, int32_t z,

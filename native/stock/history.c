@@ -23,7 +23,7 @@
 
 /* Steps of batch sizes and the largest one. Larger ones cut hardly faster, while this many moves are what may have to
  * be cut again to step back by one. */
-enum { BASE = 8, LARGEST = 4096 };
+enum { BASE = 2, LARGEST = 4096 };
 
 /* A jump to a keyframe compares the stocks as a whole, which takes as long as cutting some thousand moves. */
 enum { JUMP = LARGEST };

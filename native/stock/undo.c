@@ -23,7 +23,7 @@ enum kind { KIND_TILE, KIND_ROWS, KIND_LEAF };
 
 struct entry {
     uint64_t rows; /* stored after this head */
-    uint64_t deep; /* were -background throughout */
+    uint64_t same; /* the same as the one before among all rows of the entry */
     uint32_t node;
     uint16_t slot;
     uint16_t kind;
@@ -82,61 +82,59 @@ static unsigned char *extend(swarf_undo_column *column, size_t bytes)
     return place;
 }
 
+static int is_same_row(const float *a, const float *b)
+{
+    uint64_t own[4], other[4];
+    memcpy(own, a, sizeof own);
+    memcpy(other, b, sizeof other);
+    return ((own[0] ^ other[0]) | (own[1] ^ other[1]) | (own[2] ^ other[2]) | (own[3] ^ other[3])) == 0;
+}
+
 /* Rows that are not the same bits in both leaves. */
 static uint64_t find_changed(const float *before, const float *after)
 {
     uint64_t changed = 0;
-    for (int row = 0; row < ROWS; row++) {
-        uint64_t a[4], b[4];
-        memcpy(a, before + (ptrdiff_t)row * ROW, sizeof a);
-        memcpy(b, after + (ptrdiff_t)row * ROW, sizeof b);
-        changed |= (uint64_t)(((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2]) | (a[3] ^ b[3])) != 0) << row;
-    }
+    for (int row = 0; row < ROWS; row++)
+        changed |= (uint64_t)!is_same_row(before + (ptrdiff_t)row * ROW, after + (ptrdiff_t)row * ROW) << row;
     return changed;
 }
 
-/* Which of these rows have one value throughout, to the bit. */
-static uint64_t find_deep(const float *values, uint64_t rows, float background)
+/* Of these rows those that repeat the one before: along level and upright faces most do. */
+static uint64_t find_same(const float *values, uint64_t rows)
 {
-    uint64_t deep = 0;
-    const float inside = -background;
-    uint32_t bits;
-    memcpy(&bits, &inside, sizeof bits);
-    const uint64_t two = (uint64_t)bits << 32 | bits;
+    uint64_t same = 0;
+    const float *last = NULL;
     for (; rows; rows &= rows - 1) {
-        const int row = __builtin_ctzll(rows);
-        uint64_t a[4];
-        memcpy(a, values + (ptrdiff_t)row * ROW, sizeof a);
-        deep |= (uint64_t)(((a[0] ^ two) | (a[1] ^ two) | (a[2] ^ two) | (a[3] ^ two)) == 0) << row;
+        const float *row = values + (ptrdiff_t)__builtin_ctzll(rows) * ROW;
+        if (last && is_same_row(row, last)) same |= rows & (~rows + 1);
+        last = row;
     }
-    return deep;
+    return same;
 }
 
-static swarf_status keep(swarf_undo_column *column, float background, size_t node, unsigned slot, const float *before,
-                         const float *after)
+/* Append the rows of a leaf. */
+static swarf_status append_entry(swarf_undo_column *column, struct entry entry, uint64_t rows, const float *values)
 {
-    struct entry entry = {.node = (uint32_t)node, .slot = (uint16_t)slot, .kind = KIND_TILE};
-    if (before) {
-        const uint64_t rows = after ? find_changed(before, after) : UINT64_MAX;
-        if (!rows) return SWARF_OK;
-        entry.kind = after ? KIND_ROWS : KIND_LEAF;
-        entry.deep = find_deep(before, rows, background);
-        entry.rows = rows & ~entry.deep;
-    }
+    entry.same = find_same(values, rows);
+    entry.rows = rows & ~entry.same;
     unsigned char *place = extend(column, entry_bytes(&entry));
     if (!place) return SWARF_ERROR_MEMORY;
     memcpy(place, &entry, sizeof entry);
     place += sizeof entry;
-    for (uint64_t rows = entry.rows; rows; rows &= rows - 1, place += ROW_BYTES)
-        memcpy(place, before + (ptrdiff_t)__builtin_ctzll(rows) * ROW, ROW_BYTES);
+    for (rows = entry.rows; rows; rows &= rows - 1, place += ROW_BYTES)
+        memcpy(place, values + (ptrdiff_t)__builtin_ctzll(rows) * ROW, ROW_BYTES);
     return SWARF_OK;
 }
 
 swarf_status swarf_undo_keep(swarf_undo *undo, int32_t column, size_t node, unsigned slot, const float *before,
-                             const float *after, float background)
+                             const float *after)
 {
     const swarf_undo_layer *layer = &undo->layers[undo->count - 1];
-    return keep(&layer->columns[undo->index[column]], background, node, slot, before, after);
+    struct entry entry = {.node = (uint32_t)node, .slot = (uint16_t)slot, .kind = KIND_TILE};
+    const uint64_t rows = !before ? 0 : after ? find_changed(before, after) : UINT64_MAX;
+    if (before && !rows) return SWARF_OK;
+    if (before) entry.kind = after ? KIND_ROWS : KIND_LEAF;
+    return append_entry(&layer->columns[undo->index[column]], entry, rows, before);
 }
 
 /* What is in the columns of a layer, whose lists then fit. */
@@ -183,14 +181,16 @@ void swarf_undo_close(swarf_undo *undo)
 
 /* ---- putting back ------------------------------------------------------------------------------------------------ */
 
-static void put_rows(const struct entry *entry, const unsigned char *stored, float background, float *values)
+static void put_rows(const struct entry *entry, const unsigned char *stored, float *values)
 {
-    for (uint64_t rows = entry->deep; rows; rows &= rows - 1) {
-        float *row = values + (ptrdiff_t)__builtin_ctzll(rows) * ROW;
-        for (int i = 0; i < ROW; i++) row[i] = -background;
+    const unsigned char *row = stored;
+    for (uint64_t rows = entry->rows | entry->same; rows; rows &= rows - 1) {
+        if (entry->rows & rows & (~rows + 1)) {
+            row = stored;
+            stored += ROW_BYTES;
+        }
+        memcpy(values + (ptrdiff_t)__builtin_ctzll(rows) * ROW, row, ROW_BYTES);
     }
-    for (uint64_t rows = entry->rows; rows; rows &= rows - 1, stored += ROW_BYTES)
-        memcpy(values + (ptrdiff_t)__builtin_ctzll(rows) * ROW, stored, ROW_BYTES);
 }
 
 static swarf_status put_entry(swarf_tree *tree, const struct entry *entry, const unsigned char *stored)
@@ -204,7 +204,7 @@ static swarf_status put_entry(swarf_tree *tree, const struct entry *entry, const
         return SWARF_OK;
     }
     float *values = entry->kind == KIND_LEAF ? whole : swarf_tree_leaf(tree, entry->node, entry->slot);
-    put_rows(entry, stored, background, values);
+    put_rows(entry, stored, values);
     swarf_leaf_mask(values, background, mask, &least);
     if (entry->kind == KIND_LEAF) return swarf_tree_leaf_add(tree, entry->node, entry->slot, values, mask);
     swarf_tree_leaf_mask(tree, entry->node, entry->slot, mask);
@@ -289,25 +289,10 @@ static swarf_status append_both(swarf_undo_column *out, const swarf_undo_column 
 {
     const struct entry a = entry_at(older, older_at), b = entry_at(newer, newer_at);
     if (a.kind != KIND_ROWS) return append_bytes(out, older->bytes + older_at, entry_bytes(&a));
-    const uint64_t known = a.rows | a.deep;
-    struct entry both = b;
-    both.rows = a.rows | (b.rows & ~known);
-    both.deep = a.deep | (b.deep & ~known);
-    unsigned char *place = extend(out, entry_bytes(&both));
-    if (!place) return SWARF_ERROR_MEMORY;
-    memcpy(place, &both, sizeof both);
-    place += sizeof both;
-    const unsigned char *from_a = older->bytes + older_at + sizeof a, *from_b = newer->bytes + newer_at + sizeof b;
-    for (uint64_t rows = a.rows | b.rows; rows; rows &= rows - 1) {
-        const uint64_t row = rows & (~rows + 1);
-        if (both.rows & row) {
-            memcpy(place, a.rows & row ? from_a : from_b, ROW_BYTES);
-            place += ROW_BYTES;
-        }
-        if (a.rows & row) from_a += ROW_BYTES;
-        if (b.rows & row) from_b += ROW_BYTES;
-    }
-    return SWARF_OK;
+    _Alignas(64) float values[SWARF_LEAF_SIZE];
+    put_rows(&b, newer->bytes + newer_at + sizeof b, values);
+    put_rows(&a, older->bytes + older_at + sizeof a, values);
+    return append_entry(out, b, a.rows | a.same | b.rows | b.same, values);
 }
 
 static swarf_status merge_lists(const struct merge *merge, const swarf_undo_column *older,
@@ -445,7 +430,7 @@ static swarf_status match_slot(const struct match *match, int32_t column, size_t
     if (values && wanted.values ? memcmp(values, wanted.values, SWARF_LEAF_SIZE * sizeof *values) == 0
                                 : !values && !wanted.values && inside == wanted.inside)
         return SWARF_OK;
-    if (match->undo) SWARF_TRY(swarf_undo_keep(match->undo, column, node, slot, values, wanted.values, background));
+    if (match->undo) SWARF_TRY(swarf_undo_keep(match->undo, column, node, slot, values, wanted.values));
     if (!wanted.values) {
         swarf_tree_tile(tree, node, slot, wanted.inside);
         return SWARF_OK;

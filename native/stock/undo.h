@@ -4,7 +4,7 @@
  *   layer     one batch of a cut: its columns of 4x4 slots that changed anything, by ascending number
  *   column    entries, one after the other: a head, then 8 floats for each row that it stores
  *   entry     a slot that was an inside tile (nothing stored); rows of a leaf that is still there; or a whole leaf that
- *             is gone. Rows are 8 voxels along z. Those that were inside beyond the band are told by a bit only.
+ *             is gone. Rows are 8 voxels along z. One that repeats the row before it is told by a bit only.
  *
  * While a batch is cut every column belongs to one thread, and so does its list of entries: no locks. Restoring works
  * column by column too. The faces of the block must have leaves (swarf_block_finish()) before anything is kept: what is
@@ -43,7 +43,7 @@ swarf_status swarf_undo_open(swarf_undo *undo, const swarf_tree_layout *layout, 
 /** Keep what a slot of the open layer holds before it changes: `before` its leaf (NULL: an inside tile), `after` the
  *  values it is going to have or already has (NULL: the leaf goes). One thread per column. */
 swarf_status swarf_undo_keep(swarf_undo *undo, int32_t column, size_t node, unsigned slot, const float *before,
-                             const float *after, float background);
+                             const float *after);
 /** Close the layer, however much of it was cut. */
 void swarf_undo_close(swarf_undo *undo);
 

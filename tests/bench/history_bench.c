@@ -72,7 +72,7 @@ static void cut_plainly(const struct bench *bench, swarf_stock *stock)
     for (size_t begin = 0; begin < bench->moves;) {
         size_t end = begin + 1;
         while (end < bench->moves && tool_of(bench, end) == tool_of(bench, begin)) end++;
-        for (size_t size = 4096; size; size /= 8)
+        for (size_t size = 4096; size; size /= 2)
             for (; end - begin >= size; begin += size) cut(bench, stock, begin, begin + size);
     }
 }
