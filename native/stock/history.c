@@ -2,12 +2,12 @@
 /* History: positions of a stock along a program.
  *
  *   runs        stretches of moves with one body; positions within are counted from the run's first move
- *   batches     a position p of a run is cut in batches of 4096, 512, 64, 8 and 1 moves, as many of each as fit,
- * largest first: the digits of p in base 8. The rest of a program that is already behind is cut in the same way. way
- * points  of a position: where those batches end. At a way point the stock is the same, to the bit, as when that was
- * where to go; so a way starts from any of them. records     what each batch changed, a stack: to go back is to undo
- * down to a way point and cut the rest keyframes   copies of the stock at multiples of 4096 moves and at ends of runs,
- * which are way points of all that comes later
+ *   batches     what a position p of a run is cut in: 4096, 2048, 1024 ... 1 moves, largest first, as they fit; that
+ *               is, the digits of p in base 2. The runs that are already behind are cut in the same way
+ *   way points  of a position: where those batches end. At a way point the stock is the same, to the bit, as when
+ *               that was where to go; so a way starts from any of them
+ *   records     what each batch changed, a stack: to go back is to undo down to a way point and cut the rest
+ *   keyframes   copies of the stock at multiples of 4096 moves and at ends of runs: way points of all later positions
  */
 #include "swarf/history.h"
 
@@ -21,8 +21,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Steps of batch sizes and the largest one. Larger ones cut hardly faster, while this many moves are what may have to
- * be cut again to step back by one. */
+/* Steps of batch sizes and the largest one. Small steps waste least in the small batches at the end of a long way.
+ * Larger batches cut hardly faster, while this many moves are what may have to be cut again to step back by one. */
 enum { BASE = 2, LARGEST = 4096 };
 
 /* A jump to a keyframe compares the stocks as a whole, which takes as long as cutting some thousand moves. */

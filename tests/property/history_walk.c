@@ -7,7 +7,7 @@
 
 #include "walks.h"
 
-enum { STEPS = 20 };
+enum { STEPS = 16 };
 
 typedef struct stopper {
     long left; /* reports until it stops; negative: never */
@@ -117,7 +117,7 @@ static void check_simulation(const walk_job *job, test_random *random)
         CHECK_NEAR(volume, volume_of(plain), 2e-5 * volume_of(plain));
         done = move;
     }
-    for (int i = 0; i < 10; i++) {
+    for (int i = 0; i < 5; i++) {
         const size_t move = (size_t)test_random_below(random, job->moves);
         double last = 0;
         for (int part = 0; part <= 4; part++) {
@@ -138,9 +138,9 @@ int main(int count, char **argument)
     test_random random = test_random_begin(815);
     CHECK_OK(swarf_progress_interval_set(0));
     int cancelled = 0;
-    const int jobs = count > 1 ? atoi(argument[1]) : 3;
+    const int jobs = count > 1 ? atoi(argument[1]) : 2;
     for (int i = 0; i < jobs; i++) {
-        walk_job job = walk_job_make(&random, i ? 150 + (size_t)test_random_below(&random, 400) : 4400);
+        walk_job job = walk_job_make(&random, i ? 150 + (size_t)test_random_below(&random, 400) : 4200);
         printf("job %d: %zu moves, voxel %g\n", i, job.moves, job.voxel);
         const size_t limits[] = {1, 30000, 500000, SIZE_MAX};
         for (int k = i % 2; k < 4; k += 2) check_walk(&job, &random, limits[k], &cancelled);
