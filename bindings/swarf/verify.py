@@ -37,6 +37,7 @@ class Verdict:
     cluster: Optional[Cluster] = None
     amount: Optional[float] = None
     accepted: Optional[str] = None
+    t: float = 0.0  #: how far along the move it is, 0 .. 1
 
 
 @dataclass
@@ -135,7 +136,7 @@ def verify(
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits)
-    made.findings = [*_check_findings(job, checked), *_uncut_findings(job, checked), *_load_findings(job, checked, limits),
+    made.findings = [*findings_of(job, checked), *_load_findings(job, checked, limits),
                      *_design_findings(solid, first, mesh),
                      *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
     for idle in accepting.apply(accept, made.findings):
@@ -152,11 +153,16 @@ def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:
     return (names[index] if 0 <= index < len(names) else None), line
 
 
+def findings_of(job: Job, checked: Check) -> list[Verdict]:
+    """What Stock.check() found on a job, and what it says of moves that were not simulated."""
+    return [*_check_findings(job, checked), *_uncut_findings(job, checked)]
+
+
 def _check_findings(job: Job, checked: Check) -> list[Verdict]:
     names = job.program.operations
     return [Verdict(found.severity, found.text, found.kind,
                     names[found.operation] if 0 <= found.operation < len(names) else None, found.line, found.move,
-                    found.tip, amount=found.depth) for found in checked.findings]
+                    found.tip, amount=found.depth, t=found.t) for found in checked.findings]
 
 
 def _uncut_findings(job: Job, checked: Check) -> list[Verdict]:

@@ -21,7 +21,7 @@ def circle(x, y, radius, feed):
 
 
 def make_job(document):
-    """A plate: faced, a round pocket, a slot along a wave and four holes, with three tools."""
+    """A plate: faced, a round pocket, a slot along a wave and four holes, with three tools; its model differs."""
     import Part
     import samples
 
@@ -43,7 +43,13 @@ def make_job(document):
         ("Facing", flat, [*face, "G0 Z5"]), ("RoundPocket", flat, [*pocket, "G0 Z5"]), ("Wave", small, wave),
         ("Holes", drill, [*holes, "G80", "G0 Z20"]))]
     job = samples.make_job(document, operations, [flat, small, drill],
-                           Part.makeBox(80, 50, 15, FreeCAD.Vector(0, 0, -15)), design=False)
+                           Part.makeBox(80, 50, 15, FreeCAD.Vector(0, 0, -15)))
+    # The model knows nothing of the wave, wants the pocket 0.2 mm deeper, and a hole that no operation makes.
+    design = Part.makeBox(80, 50, 14, FreeCAD.Vector(0, 0, -15))
+    for x, y, radius, bottom in ((25, 25, 16, -5.2), (6, 6, 2.5, -16), (74, 6, 2.5, -16), (74, 44, 2.5, -16),
+                                 (6, 44, 2.5, -16), (42, 40, 4, -16)):
+        design = design.cut(Part.makeCylinder(radius, 20, FreeCAD.Vector(x, y, bottom)))
+    job.Model.Group[0].Shape = design
     return job
 
 
@@ -158,6 +164,7 @@ class Check:
         self.panel = Gui.getMainWindow().findChild(QtWidgets.QDockWidget, "SwarfLive")
         assert self.panel is not None, "the command opened no panel"
         wait_for(lambda: self.panel.session is not None, "opening")
+        wait_for(lambda: not self.panel.checking.running, "the checks")
         self.settle(0.0)
         screenshot("panel-start.png")
         # What lies within the picture's middle is stock, the corner is background.
@@ -368,6 +375,54 @@ class Check:
         item.setCheckState(0, QtCore.Qt.Checked)
         assert document.getObject("Holes").ViewObject.Visibility
 
+    def findings(self):
+        """What the checks found: list, marks, going there, leaving out, breaking off."""
+        panel, tree = self.panel, self.panel.findings.tree
+        page = panel.tabs.indexOf(panel.findings)
+        panel.tabs.setCurrentIndex(page)
+        found = panel.checking.found
+        listing = panel.session.listing
+        assert tree.topLevelItemCount() == len(found) > 0
+        assert panel.tabs.tabText(page) == "Findings (%d)" % sum(item.severity != "note" for item in found)
+        index = next(index for index, item in enumerate(found)
+                     if item.kind == "gouge" and listing.operations[item.operation].name == "Wave")
+        assert tree.topLevelItem(index).text(1) == "Wave"
+        assert {"gouge", "excess"} <= {item.kind for item in found}, [item.text for item in found]
+        pump(0.2)
+        place = tree.visualItemRect(tree.topLevelItem(index)).center()
+        click(tree.viewport(), place.x(), place.y())
+        pump(0.5)
+        self.settle(found[index].place)
+        view = panel.view
+        x, y, _ = view.camera.project(found[index].point, view.aspect())
+        assert max(abs(x), abs(y)) < 1e-6 and view.mark == found[index].point
+        assert view.camera.height < 0.35 * sum((b - a) ** 2 for a, b in zip(*view.box)) ** 0.5
+        screenshot("panel-findings.png")
+        errors = panel.findings.filters["error"]
+        errors.click()
+        assert [tree.topLevelItem(row).isHidden() for row in range(len(found))] == \
+            [item.severity == "error" for item in found]
+        errors.click()
+        assert not any(tree.topLevelItem(row).isHidden() for row in range(len(found)))
+        panel.bar._stops["finding"].setChecked(True)
+        panel.seek(0)
+        panel.set_speed(0.0)
+        self.button("play")
+        wait_for(lambda: not panel.transport.playing, "the stop at a finding")
+        self.settle(min(item.place for item in found if item.place))
+        panel.bar._stops["finding"].setChecked(False)
+        panel.findings.run.click()
+        panel.findings.run.click()
+        wait_for(lambda: not panel.checking.running, "breaking off the checks")
+        assert "ancelled" in panel.findings.state.text() or panel.checking.found == found  # too fast to be stopped
+        assert panel.checking.found == found, "cancelling keeps what was known"
+        panel.findings.run.click()
+        assert panel.tabs.tabText(page).endswith("…")
+        wait_for(lambda: not panel.checking.running, "checking again")
+        assert panel.checking.found == found
+        key(view, QtCore.Qt.Key_0, "0")
+        pump(0.5)
+
     def accuracy(self):
         """Estimate, another voxel size, one that cannot be, cancelling."""
         panel = self.panel
@@ -484,7 +539,7 @@ def check():
     Gui.SendMsgToActiveView("ViewFit")
     for step, arguments in ((check.preferences, ()), (check.opening, (document, job)), (check.transporting, ()), (check.steering, ()),
                             (check.looking, (document, job)),
-                            (check.clicking, (document,)), (check.accuracy, ()), (check.outputs, (document,)),
+                            (check.clicking, (document,)), (check.findings, ()), (check.accuracy, ()), (check.outputs, (document,)),
                             (check.bad_moments, (document, job)), (check.closing, ())):
         print("CHECK", step.__name__)
         sys.stdout.flush()

@@ -81,6 +81,20 @@ def drag(camera, what, dx, dy, aspect, pivot, turntable=False):
         camera.zoom(WHEEL_FACTOR ** (8 * dy / 2), pivot)
 
 
+def shown_height(camera, point):
+    """mm from the bottom to the top of the picture, as deep as a point."""
+    if not camera.perspective:
+        return camera.height
+    depth = sum(f * (p - e) for f, p, e in zip(direction(camera), point, camera.eye))
+    return 2 * max(depth, 0.0) * math.tan(math.radians(camera.fov) / 2)
+
+
+def approach(camera, point, aspect, height):
+    """Bring a point to the middle, so near that the picture is not higher than this, mm."""
+    centre(camera, point, aspect)
+    camera.zoom(max(shown_height(camera, point) / height, 1.0), point)
+
+
 def centre(camera, point, aspect):
     """Move so that a point comes to the middle."""
     x, y, _ = camera.project(point, aspect)

@@ -30,6 +30,7 @@ class Page:
         layout.addRow(translate("Swarf", "Speed"), self.speed)
         self.flags = {}
         for name, text in (("AutoPlay", translate("Swarf", "Play as soon as the job is read")),
+                           ("AutoCheck", translate("Swarf", "Check the job when it is opened")),
                            ("Perspective", translate("Swarf", "Perspective")),
                            ("ShowCutter", translate("Swarf", "Show the cutter")),
                            ("ShowPath", translate("Swarf", "Show the tool's path")),

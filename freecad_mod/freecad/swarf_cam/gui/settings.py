@@ -10,8 +10,11 @@ VIEW = "User parameter:BaseApp/Preferences/View"
 RESOLUTION = 400
 SPEED = 50.0
 
-BOOLEANS = {"AutoPlay": True, "ShowCutter": True, "ShowPath": False, "Perspective": False, "Occlusion": True,
-            "Shadow": False}
+# Deviation from the design that is well, mm.
+TOLERANCE_MM = 0.05
+
+BOOLEANS = {"AutoPlay": True, "AutoCheck": True, "ShowCutter": True, "ShowPath": False, "Perspective": False,
+            "Occlusion": True, "Shadow": False}
 
 
 def _group():
@@ -46,6 +49,17 @@ def speed():
 def set_speed(value):
     """Keep it."""
     _group().SetFloat("Speed", value)
+
+
+def tolerance():
+    """Deviation from the design that is well, mm."""
+    value = _group().GetFloat("Tolerance", TOLERANCE_MM)
+    return value if value > 0 else TOLERANCE_MM
+
+
+def set_tolerance(value):
+    """Keep it."""
+    _group().SetFloat("Tolerance", value)
 
 
 def navigation():

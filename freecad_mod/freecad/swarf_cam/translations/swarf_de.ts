@@ -131,8 +131,40 @@
             <translation>Wird abgebrochen ...</translation>
         </message>
         <message>
+            <source>Check</source>
+            <translation>Prüfen</translation>
+        </message>
+        <message>
+            <source>Check again</source>
+            <translation>Noch einmal prüfen</translation>
+        </message>
+        <message>
+            <source>Check the job when it is opened</source>
+            <translation>Den Auftrag beim Öffnen prüfen</translation>
+        </message>
+        <message>
+            <source>Checked</source>
+            <translation>Geprüft</translation>
+        </message>
+        <message>
+            <source>Checked, without a model to compare with</source>
+            <translation>Geprüft, ohne Modell zum Vergleichen</translation>
+        </message>
+        <message>
+            <source>Checked: nothing was found</source>
+            <translation>Geprüft: nichts gefunden</translation>
+        </message>
+        <message>
+            <source>Checking ...</source>
+            <translation>Wird geprüft ...</translation>
+        </message>
+        <message>
             <source>Click on the stock to learn which line cut it.</source>
             <translation>Ein Klick auf das Rohteil zeigt, welche Zeile dort geschnitten hat.</translation>
+        </message>
+        <message>
+            <source>Click: go to the move and the place</source>
+            <translation>Klick: zur Bewegung und zur Stelle gehen</translation>
         </message>
         <message>
             <source>Click: go to the operation. The box shows its path in the 3D view.</source>
@@ -171,8 +203,20 @@
             <translation>Die Animation wird gezeichnet ...</translation>
         </message>
         <message>
+            <source>Error</source>
+            <translation>Fehler</translation>
+        </message>
+        <message>
             <source>FRONT</source>
             <translation>VORNE</translation>
+        </message>
+        <message>
+            <source>Finding</source>
+            <translation>Befund</translation>
+        </message>
+        <message>
+            <source>Findings</source>
+            <translation>Befunde</translation>
         </message>
         <message>
             <source>Folder for the frames of the animation</source>
@@ -225,6 +269,10 @@
         <message>
             <source>Not enough memory: {0} Choose larger voxels on the page Accuracy.</source>
             <translation>Zu wenig Speicher: {0} Wählen Sie auf der Seite Genauigkeit größere Voxel.</translation>
+        </message>
+        <message>
+            <source>Note</source>
+            <translation>Hinweis</translation>
         </message>
         <message>
             <source>One line back (Left)</source>
@@ -319,6 +367,14 @@
             <translation>Schatten, wenn die Ansicht ruht</translation>
         </message>
         <message>
+            <source>Show errors</source>
+            <translation>Fehler zeigen</translation>
+        </message>
+        <message>
+            <source>Show notes</source>
+            <translation>Hinweise zeigen</translation>
+        </message>
+        <message>
             <source>Show the cutter</source>
             <translation>Werkzeug zeigen</translation>
         </message>
@@ -329,6 +385,10 @@
         <message>
             <source>Show the whole stock (F)</source>
             <translation>Ganzes Rohteil zeigen (F)</translation>
+        </message>
+        <message>
+            <source>Show warnings</source>
+            <translation>Warnungen zeigen</translation>
         </message>
         <message>
             <source>Simulate with this voxel size</source>
@@ -441,6 +501,10 @@
         <message>
             <source>Voxels along the stock's longest edge</source>
             <translation>Voxel entlang der längsten Kante des Rohteils</translation>
+        </message>
+        <message>
+            <source>Warning</source>
+            <translation>Warnung</translation>
         </message>
         <message>
             <source>What the colours of the stock show</source>

@@ -21,7 +21,9 @@ from ..qt import QtCore, QtWidgets
 from .accuracy import Accuracy
 from .banner import Banner
 from .bridge import Bridge
+from .checking import Checking
 from .files import Files
+from .findings import FindingList
 from .inspector import Inspector
 from .operations import OperationList
 from .picking import Picking
@@ -63,6 +65,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.transport = None
         self.files, self.picking = Files(self), Picking(self)
         self._build()
+        self.checking = Checking(self)
         self._connect()
         self._clock = QtCore.QElapsedTimer()
         self._timer = QtCore.QTimer(self)
@@ -97,10 +100,11 @@ class LivePanel(QtWidgets.QDockWidget):
         self.tabs.setObjectName("SwarfTabs")
         self.tabs.setDocumentMode(True)
         self.operations, self.program = OperationList(), ProgramList()
-        self.inspector, self.accuracy = Inspector(), Accuracy()
+        self.inspector, self.findings, self.accuracy = Inspector(), FindingList(), Accuracy()
         for widget, text in ((self.operations, translate("Swarf", "Operations")),
                              (self.program, translate("Swarf", "Program")),
                              (self.inspector, translate("Swarf", "Point")),
+                             (self.findings, translate("Swarf", "Findings")),
                              (self.accuracy, translate("Swarf", "Accuracy"))):
             self.tabs.addTab(widget, text)
         self.splitter.addWidget(self.tabs)
@@ -234,6 +238,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.operations.open(None, ())
         self.program.open(None)
         self.picking.close_job()
+        self.checking.close_job()
         self.bar.set_playing(False)
         self.banner.done()
         self._show_state()
@@ -251,6 +256,7 @@ class LivePanel(QtWidgets.QDockWidget):
         for engine in list(self._old_engines):
             engine.join(QUIT_SECONDS)
         self.files.keeper.join(QUIT_SECONDS)
+        self.checking.join(QUIT_SECONDS)
 
     # What the engine tells
 
@@ -268,6 +274,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.timeline.open(session)
         self.operations.open(session, [self._path_is_shown(index) for index in range(len(session.data.operations))])
         self.program.open(session.listing)
+        self.checking.open(session)
         self.accuracy.measured(session, time.monotonic() - self._opened_at)
         self.view.open(session.box)
         place, self._resume = self._resume, None

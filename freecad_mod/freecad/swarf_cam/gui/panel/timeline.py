@@ -25,12 +25,18 @@ class Timeline(QtWidgets.QWidget):
         self.setFocusPolicy(QtCore.Qt.StrongFocus)
         self.setAccessibleName(translate("Swarf", "Time line"))
         self._session = None
+        self._findings = []
         self._place = 0.0
         self._dragging = False
 
     def open(self, session):
         """Another job, None for none."""
-        self._session, self._place = session, 0.0
+        self._session, self._findings, self._place = session, [], 0.0
+        self.update()
+
+    def set_findings(self, marks):
+        """What is marked below the band: (place, severity, text)."""
+        self._findings = marks
         self.update()
 
     def set_place(self, place):
@@ -60,8 +66,7 @@ class Timeline(QtWidgets.QWidget):
             tool = session.tool_at(place)
             name = session.data.tools.get(tool, ("",))[0]
             yield place, "tool", "T%d %s" % (tool, name)
-        for place, severity, text in session.overview.findings:
-            yield place, severity, text
+        yield from self._findings
 
     def paintEvent(self, _):
         """Band of operations, played part strong; marks above; the hand."""

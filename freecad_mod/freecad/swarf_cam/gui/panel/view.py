@@ -16,6 +16,9 @@ translate = FreeCAD.Qt.translate
 # More pixels than this are drawn smaller and scaled up: what a screen of 4K shows, at most.
 PIXELS_MAX = 8_300_000
 
+# Part of the stock's diagonal that the picture shows after flying to a place.
+NEAR_SHARE = 0.3
+
 # Pixels the mouse may move between press and release of a click.
 CLICK_SLACK = 4
 
@@ -131,6 +134,13 @@ class PictureView(QtWidgets.QWidget):
         if self.camera is not None:
             target = self._swarf.Camera.view(name, self.box, self.aspect(), perspective=self.camera.perspective)
             target.zoom(0.9)
+            self._turn_to(target)
+
+    def fly_to(self, point):
+        """Bring a point near, to the middle."""
+        if self.camera is not None:
+            target = self.camera.copy()
+            navigation.approach(target, point, self.aspect(), NEAR_SHARE * math.dist(*self.box))
             self._turn_to(target)
 
     def set_perspective(self, on):

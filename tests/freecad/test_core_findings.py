@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Findings without Qt and FreeCAD: the checks of a job, their places in the program, the order they are shown in."""
+
+import array
+import itertools
+import math
+from types import SimpleNamespace
+
+import pytest
+from swarf_cam import native
+from swarf_cam.core import findings, navigation, program
+from swarf_cam.core.clock import Clock
+from swarf_cam.core.findings import Finding
+from swarf_cam.core.job import JobData
+from swarf_cam.core.listing import Listing
+from test_core_program import Command
+
+LO, HI = (0.0, 0.0, -10.0), (40.0, 20.0, 0.0)
+
+
+def box_mesh(lo, hi):
+    """A block as (points, triangles), outwards."""
+    points = array.array("d", itertools.chain(*itertools.product(*zip(lo, hi))))
+    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    return points, array.array("I", [i for a, b, c, d in quads for i in (a, b, c, a, c, d)])
+
+
+def make(design=None):
+    """JobData and Listing: a rapid into the block, then a slot 2 mm deep."""
+    lines = [["G0 X20 Y15 Z5", "G0 Z-3", "G0 Z5"], ["G0 X-5 Y5", "G0 Z-2", "G1 X45 F10", "G0 Z5"]]
+    operations = [program.Operation(name, [Command(line) for line in own], 1, "a",
+                                    [Command("M6 T1"), Command("M3 S1000")])
+                  for name, own in zip(("Plunge", "Slot"), lines)]
+    table = program.build(operations)
+    mill = [("flutes", [(0, 0, 0), (3, 0, 0), (3, 20, 0), (0, 20, 0)])]
+    data = JobData("Job", table, {1: ("Mill", mill)}, {"kind": "box", "lo": LO, "hi": HI}, design,
+                   operations=operations)
+    return data, Listing(table, operations)
+
+
+def run(data, listing, tolerance=0.05, progress=lambda done: False):
+    from swarf_cam import checks
+
+    return findings.from_verdicts(checks.run(native.to_job(data), 0.5, tolerance, progress), listing)
+
+
+def test_a_rapid_into_material_is_found_where_the_tip_meets_the_top(swarf):
+    data, listing = make()
+    found = run(data, listing)
+    rapid = found[0]
+    assert rapid.severity == "error" and listing.operations[rapid.operation].name == "Plunge"
+    assert listing.text(rapid.line) == "G0 Z-3"
+    # from Z5 to Z-3: the top, Z0, is five eighths along
+    assert rapid.place - int(rapid.place) == pytest.approx(5 / 8, abs=0.05 / 8)
+    tip = Clock(data.moves).tip_at(rapid.place)
+    assert tip == pytest.approx((20, 15, 0), abs=0.05) and rapid.point == pytest.approx(tip, abs=1e-6)
+
+
+def test_the_design_tells_what_should_not_have_been_cut(swarf):
+    data, listing = make(box_mesh(LO, HI))
+    found = run(data, listing)
+    gouges = {listing.operations[item.operation].name: item for item in found if item.kind == "gouge"}
+    assert set(gouges) == {"Plunge", "Slot"}
+    assert gouges["Slot"].amount == pytest.approx(-2, abs=0.05)
+    assert listing.text(gouges["Slot"].line) == "G1 X45 F600"
+    # it is seen behind the move that made it
+    assert gouges["Slot"].place == listing.moves_of(gouges["Slot"].line)[1]
+    assert findings.worst_places(found, 1) == [gouges["Plunge"]]
+    assert not [item for item in run(data, listing, tolerance=5.0) if item.kind == "gouge"]
+
+
+def test_what_is_left_is_seen_at_the_end(swarf):
+    data, listing = make(box_mesh(LO, (40.0, 20.0, -1.0)))
+    left = [item for item in run(data, listing) if item.kind in ("excess", "not reached")]
+    assert left and all(item.place == len(data.moves) for item in left)
+
+
+def test_a_design_that_is_open_is_told_and_the_rest_checked(swarf):
+    points, triangles = box_mesh(LO, HI)
+    data, listing = make((points, triangles[:12]))
+    found = run(data, listing)
+    assert {"design", "rapid"} <= {item.kind for item in found}, found
+    assert next(item for item in found if item.kind == "design").place is None
+
+
+def test_checks_can_be_broken_off(swarf):
+    data, listing = make(box_mesh(LO, HI))
+    told = []
+    run(data, listing, progress=told.append)
+    assert told == sorted(told) and told[-1] <= 1.0
+    for limit in (0.0, told[len(told) // 2], told[-1]):
+        with pytest.raises(swarf.Cancelled):
+            run(data, listing, progress=lambda done, limit=limit: done >= limit)
+
+
+def test_order_marks_and_counts():
+    listing = SimpleNamespace(begin=[0, 5, 9], line_of=lambda move: move // 5, operation_at=lambda move: 0)
+    verdicts = [SimpleNamespace(severity=severity, text=severity, kind=kind, move=move, t=0.5, place=point,
+                                amount=amount)
+                for severity, kind, move, point, amount in (
+                    ("note", "design", -1, None, None), ("warning", "not reached", 2, (1, 1, 1), 4.0),
+                    ("error", "rapid", 7, (1, 2, 3), 0.2), ("error", "gouge", 3, (0, 0, 0), -0.5))]
+    found = findings.from_verdicts(verdicts, listing)
+    assert [(item.severity, item.place, item.line) for item in found] == [
+        ("error", 4.0, 0), ("error", 7.5, 1), ("warning", 9.0, 0), ("note", None, -1)]
+    assert [mark[:2] for mark in findings.marks(found)] == [(4.0, "error"), (7.5, "error"), (9.0, "warning")]
+    assert findings.counts(found) == {"error": 2, "warning": 1, "note": 1}
+    assert [item.kind for item in findings.worst_places(found, 5)] == ["not reached", "gouge"]
+    together = [Finding("error", "a", place=1.0), Finding("note", "b", place=1.0)]
+    assert [mark[1] for mark in findings.marks(together)] == ["note", "error"], "the worst is drawn last"
+    overview = findings.from_overview([(3.0, "warning", "w"), (7.0, "error", "e")], listing)
+    assert [(item.text, item.line) for item in overview] == [("e", 1), ("w", 0)]
+
+
+@pytest.mark.parametrize("perspective", (False, True))
+def test_approach_brings_a_place_to_the_middle(swarf, perspective):
+    camera = swarf.Camera.view("isometric", (LO, HI), 4 / 3, perspective=perspective)
+    point = (35.0, 3.0, -2.0)
+    navigation.approach(camera, point, 4 / 3, 10.0)
+    x, y, _ = camera.project(point, 4 / 3)
+    assert math.hypot(x, y) < 1e-6
+    assert navigation.shown_height(camera, point) == pytest.approx(10.0)
+    navigation.approach(camera, point, 4 / 3, 20.0)  # nearer already: stays
+    assert navigation.shown_height(camera, point) == pytest.approx(10.0)
