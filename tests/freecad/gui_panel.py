@@ -127,10 +127,17 @@ class Check:
         def there():
             frame = self.panel.view.frame
             camera = self.panel.view.camera
-            return (frame is not None and frame.sharp and frame.place == self.panel.transport.wanted
+            return (frame is not None and frame.sharp and (frame.width, frame.height) == self.panel.view.pixels()
+                    and frame.place == self.panel.transport.wanted
                     and (frame.camera.eye, frame.camera.target, frame.camera.height) ==
                     (camera.eye, camera.target, camera.height) and (place is None or frame.place == place))
         wait_for(there, "a sharp picture at %s" % place)
+
+    def redrawn(self):
+        """Wait for another sharp picture than the last one: something else than camera and place has changed."""
+        self.panel.view.frame = None
+        pump(0.1)
+        self.settle()
 
     def image(self):
         """The sharp picture."""
@@ -423,6 +430,47 @@ class Check:
         key(view, QtCore.Qt.Key_0, "0")
         pump(0.5)
 
+    def section(self):
+        """Cut open by the button, the slider, the number, the other side; kept while it plays."""
+        panel, row = self.panel, self.panel.section
+        panel.seek(panel.transport.end)
+        whole = self.image()
+        button = panel.tools.actions_by_name["section"]
+        assert not button.isChecked() and row.isHidden(), "off at first"
+        button.trigger()
+        self.redrawn()
+        half = self.image()
+        assert row.isVisible() and differing(whole.scaled(half.size()), half) > 0.05
+        row.position.setValue(25.0)
+        panel.seek(panel.session.listing.operation_begin[2])
+        self.settle()
+        assert panel.section.planes() == (((40.0, 25.0, -7.5), (0.0, -1.0, 0.0)),)
+        # the cut face through the middle of the pocket lies where its plane is
+        view = panel.view
+        x, y, _ = view.camera.project((60, 25, -8), view.aspect())
+        point, hit = view.point_under((x + 1) / 2 * view.width(), (1 - y) / 2 * view.height())
+        assert hit and abs(point[1] - 25) < 0.05, point
+        screenshot("panel-section.png")
+        row.slider.setValue(0)
+        self.redrawn()
+        assert row.position.value() == 0.0
+        row.axis.setCurrentIndex(0)
+        row.slider.setValue(500)
+        row.flip.click()
+        assert panel.section.planes() == (((40.0, 25.0, -7.5), (-1.0, 0.0, 0.0)),)
+        panel.set_speed(0.0)
+        self.button("play")
+        wait_for(lambda: not panel.transport.playing, "the end of playing cut open")
+        self.settle()
+        screenshot("panel-section-x.png")
+        row.flip.click()
+        row.axis.setCurrentIndex(1)
+        row.slider.setValue(500)
+        button.trigger()
+        assert row.isHidden()
+        self.redrawn()
+        assert differing(whole, self.image()) == 0, "closed again it is as before"
+
     def accuracy(self):
         """Estimate, another voxel size, one that cannot be, cancelling."""
         panel = self.panel
@@ -539,7 +587,7 @@ def check():
     Gui.SendMsgToActiveView("ViewFit")
     for step, arguments in ((check.preferences, ()), (check.opening, (document, job)), (check.transporting, ()), (check.steering, ()),
                             (check.looking, (document, job)),
-                            (check.clicking, (document,)), (check.findings, ()), (check.accuracy, ()), (check.outputs, (document,)),
+                            (check.clicking, (document,)), (check.findings, ()), (check.section, ()), (check.accuracy, ()), (check.outputs, (document,)),
                             (check.bad_moments, (document, job)), (check.closing, ())):
         print("CHECK", step.__name__)
         sys.stdout.flush()

@@ -17,6 +17,7 @@ from swarf_cam.core import navigation, program, transport, viewcube
 from swarf_cam.core.clock import Clock, text_of
 from swarf_cam.core.engine import Engine
 from swarf_cam.core.job import JobData
+from swarf_cam.core.section import Section
 from test_core_program import Command
 
 
@@ -449,3 +450,32 @@ def test_translations_are_complete():
     assert done.returncode == 0, done.stdout.decode()
     folder = os.path.join(ADDON, "freecad", "swarf_cam", "translations")
     assert {os.path.splitext(name)[0] for name in os.listdir(folder) if name.endswith(".qm")} == {"swarf_de"}
+
+
+def test_the_section_takes_away_the_side_in_front():
+    box = ((0.0, 0.0, -15.0), (80.0, 50.0, 0.0))
+    plane = Section()
+    assert plane.planes(box) == (((40.0, 25.0, -7.5), (0.0, -1.0, 0.0)),)
+    plane.move_to(box, 10.0)
+    assert plane.position(box) == 10.0
+    plane.axis, plane.flipped = 2, True
+    assert plane.planes(box) == (((40.0, 25.0, -12.0), (0.0, 0.0, -1.0)),), "the share of the way is kept"
+    for position, expected in ((-99.0, -15.0), (99.0, 0.0)):
+        plane.move_to(box, position)
+        assert plane.position(box) == expected
+
+
+def test_a_section_is_seen_and_not_picked_through(swarf, session, table):
+    from swarf_cam import session as sessions
+
+    go(session, len(table))
+    camera = swarf.Camera.view("front", session.box, 4 / 3)
+    look = (("sections", Section(share=0.5).planes(session.box)),)
+    # the slot lies across the middle, y = 10: the cut face has its profile
+    picture = session._current_scene().render(camera, 400, 300, buffers=("seen", "position"), samples=1,
+                                              **session._look(sessions.View(camera, 400, 300, look), 0.0))
+    x, y, _ = camera.project((10, 10, -6), 4 / 3)
+    row, column = int((1 - y) / 2 * 300), int((x + 1) / 2 * 400)
+    assert picture.seen[row, column] == 2 and abs(picture.position[row * 400 + column, 1] - 10) < 1e-6
+    assert session.pick(sessions.View(camera, 400, 300, look), x, y, len(table)) is None
+    assert session.pick(sessions.View(camera, 400, 300), x, y, len(table)).point[1] == pytest.approx(0, abs=0.01)

@@ -213,7 +213,8 @@ class Session:
 
     def pick(self, view, x, y, place):
         """Picked at a place of the picture (x to the right, y upwards, -1 .. 1), or None where nothing is."""
-        found = self._current_scene().pick(view.camera, x, y, view.width, view.height)
+        found = self._current_scene().pick(view.camera, x, y, view.width, view.height,
+                                           sections=dict(view.look).get("sections") or None)
         if found is None or found.seen != "stock":
             return None
         move = found.move if found.move >= 0 else self._maker(found.point, int(place))

@@ -91,6 +91,10 @@
             <translation>Noch einmal</translation>
         </message>
         <message>
+            <source>Axis that the section is across</source>
+            <translation>Achse, quer zu der geschnitten wird</translation>
+        </message>
+        <message>
             <source>BOTTOM</source>
             <translation>UNTEN</translation>
         </message>
@@ -181,6 +185,10 @@
         <message>
             <source>Cut at</source>
             <translation>Geschnitten um</translation>
+        </message>
+        <message>
+            <source>Cut the stock open</source>
+            <translation>Das Werkstück aufschneiden</translation>
         </message>
         <message>
             <source>Cutting '{0}' once ...</source>
@@ -315,6 +323,10 @@
             <translation>Bild oder Animation</translation>
         </message>
         <message>
+            <source>Place of the section</source>
+            <translation>Lage des Schnitts</translation>
+        </message>
+        <message>
             <source>Play as soon as the job is read</source>
             <translation>Abspielen, sobald der Auftrag gelesen ist</translation>
         </message>
@@ -437,6 +449,10 @@
         <message>
             <source>TOP</source>
             <translation>OBEN</translation>
+        </message>
+        <message>
+            <source>Take the other side away</source>
+            <translation>Die andere Seite wegnehmen</translation>
         </message>
         <message>
             <source>The document was closed.</source>

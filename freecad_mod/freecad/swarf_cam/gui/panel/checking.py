@@ -120,10 +120,8 @@ class Checking:
         if panel.session is None:
             return
         if finding.place is not None:
-            panel.seek(finding.place)
+            panel.seek(finding.place, finding.line if finding.line >= 0 else None)
         panel.view.mark = finding.point
         if finding.point is not None:
             panel.view.fly_to(finding.point)
-        if finding.line >= 0:
-            panel.program.set_current(finding.line)
         panel.view.update()

@@ -28,6 +28,7 @@ from .inspector import Inspector
 from .operations import OperationList
 from .picking import Picking
 from .program_list import ProgramList
+from .sectionrow import SectionRow
 from .timeline import Timeline
 from .toolrow import ToolRow
 from .transport import TransportBar
@@ -83,6 +84,9 @@ class LivePanel(QtWidgets.QDockWidget):
         column.setSpacing(0)
         self.tools = ToolRow(sessions.known_keywords(), hasattr(self._swarf.Scene, "set_surface"))
         column.addWidget(self.tools)
+        self.section = SectionRow()
+        self.section.hide()
+        column.addWidget(self.section)
         self.splitter = QtWidgets.QSplitter(QtCore.Qt.Vertical)
         stage = QtWidgets.QWidget()
         stage_column = QtWidgets.QVBoxLayout(stage)
@@ -120,9 +124,11 @@ class LivePanel(QtWidgets.QDockWidget):
                    "keep": self.files.keep_result, "copy": self.files.copy_picture,
                    "save-picture": self.files.ask_picture, "save-animation": self.files.ask_animation}
         self.tools.pressed.connect(lambda name: presses[name]())
-        switches = {"perspective": self._set_perspective, "cutter": self._set_cutter, "path": self._set_path}
+        switches = {"perspective": self._set_perspective, "cutter": self._set_cutter, "path": self._set_path,
+                    "section": self._set_section}
         self.tools.switched.connect(lambda name, on: switches[name](on))
         self.tools.coloured.connect(self._wish)
+        self.section.changed.connect(self._wish)
         self.view.camera_changed.connect(self._wish)
         self.view.clicked.connect(self.picking.pick)
         self.timeline.sought.connect(self.seek)
@@ -276,6 +282,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.program.open(session.listing)
         self.checking.open(session)
         self.accuracy.measured(session, time.monotonic() - self._opened_at)
+        self.section.open(session.box)
         self.view.open(session.box)
         place, self._resume = self._resume, None
         if place is not None:
@@ -345,7 +352,7 @@ class LivePanel(QtWidgets.QDockWidget):
         bottom, top = colours.background(self.palette())
         return (("background", bottom), ("background_top", top), ("occlusion", settings.flag("Occlusion")),
                 ("shadow", settings.flag("Shadow")), ("edges", True),
-                ("colouring", self.tools.colouring), ("colour", colours.MATERIAL))
+                ("colouring", self.tools.colouring), ("colour", colours.MATERIAL), ("sections", self.section.planes()))
 
     def current_view(self, size=None):
         """session.View of what is shown, or of another size (width, height) of the picture."""
@@ -378,10 +385,12 @@ class LivePanel(QtWidgets.QDockWidget):
             self._timer.start()
         self.bar.set_playing(self.transport.playing)
 
-    def seek(self, place):
-        """Stop, and go to a place."""
+    def seek(self, place, line=None):
+        """Stop, and go to a place. line: stays the marked one if the place is behind its last move."""
         if self.transport is None:
             return
+        if line is not None:
+            self._line = line
         if self._line is not None and place != self.session.listing.moves_of(self._line)[1]:
             self._line = None
         self.transport.seek(place)
@@ -417,8 +426,7 @@ class LivePanel(QtWidgets.QDockWidget):
     def _go_to_line(self, line):
         """Show what a line has cut: stand behind its last move, but keep it marked, not the next one."""
         if self.session is not None:
-            self._line = line
-            self.seek(self.session.listing.moves_of(line)[1])
+            self.seek(self.session.listing.moves_of(line)[1], line)
 
     def _set_perspective(self, on):
         settings.set_flag("Perspective", on)
@@ -426,6 +434,10 @@ class LivePanel(QtWidgets.QDockWidget):
 
     def _set_cutter(self, on):
         settings.set_flag("ShowCutter", on)
+        self._wish()
+
+    def _set_section(self, on):
+        self.section.setVisible(on)
         self._wish()
 
     def _set_path(self, on):

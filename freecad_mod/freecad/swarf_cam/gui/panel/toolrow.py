@@ -14,15 +14,18 @@ COLOURINGS = (("material", QT_TRANSLATE_NOOP("Swarf", "Material")),
               ("operation", QT_TRANSLATE_NOOP("Swarf", "By operation")), ("tool", QT_TRANSLATE_NOOP("Swarf", "By tool")),
               ("age", QT_TRANSLATE_NOOP("Swarf", "By age")), ("feed", QT_TRANSLATE_NOOP("Swarf", "By feed")))
 
-# Name of icon and tool, what it says, and of those that stay down: the setting that keeps it, and the keyword that
-# Scene.render must know.
-VIEWS = (("fit", QT_TRANSLATE_NOOP("Swarf", "Show the whole stock (F)"), None, None),
-         ("isometric", QT_TRANSLATE_NOOP("Swarf", "Look from the corner (0); 1 to 6: the sides"), None, None),
-         ("perspective", QT_TRANSLATE_NOOP("Swarf", "Perspective (P)"), "Perspective", None),
-         ("cutter", QT_TRANSLATE_NOOP("Swarf", "Show the cutter"), "ShowCutter", "cutter"),
-         ("path", QT_TRANSLATE_NOOP("Swarf", "Show the tool's path"), "ShowPath", "path"))
-RESULTS = (("reload", QT_TRANSLATE_NOOP("Swarf", "Read the job again"), None, None),
-           ("keep", QT_TRANSLATE_NOOP("Swarf", "Put the result into the document"), None, None))
+# Name of icon and tool, what it says, and the keyword that Scene.render must know.
+VIEWS = (("fit", QT_TRANSLATE_NOOP("Swarf", "Show the whole stock (F)"), None),
+         ("isometric", QT_TRANSLATE_NOOP("Swarf", "Look from the corner (0); 1 to 6: the sides"), None),
+         ("perspective", QT_TRANSLATE_NOOP("Swarf", "Perspective (P)"), None),
+         ("cutter", QT_TRANSLATE_NOOP("Swarf", "Show the cutter"), "cutter"),
+         ("path", QT_TRANSLATE_NOOP("Swarf", "Show the tool's path"), "path"),
+         ("section", QT_TRANSLATE_NOOP("Swarf", "Cut the stock open"), "sections"))
+RESULTS = (("reload", QT_TRANSLATE_NOOP("Swarf", "Read the job again"), None),
+           ("keep", QT_TRANSLATE_NOOP("Swarf", "Put the result into the document"), None))
+
+# Those that stay down, and the setting that keeps them; None: up at first.
+SWITCHES = {"perspective": "Perspective", "cutter": "ShowCutter", "path": "ShowPath", "section": None}
 FILES = (("copy", QT_TRANSLATE_NOOP("Swarf", "Copy the picture")),
          ("save-picture", QT_TRANSLATE_NOOP("Swarf", "Save the picture ...")),
          ("save-animation", QT_TRANSLATE_NOOP("Swarf", "Save an animation ...")))
@@ -62,12 +65,12 @@ class ToolRow(QtWidgets.QToolBar):
         self._add_files()
         self.take_theme()
 
-    def _add(self, name, text, setting, needs, keywords):
+    def _add(self, name, text, needs, keywords):
         action = QAction(translate("Swarf", text), self)
         action.setObjectName("Swarf-" + name)
-        if setting is not None:
+        if name in SWITCHES:
             action.setCheckable(True)
-            action.setChecked(settings.flag(setting))
+            action.setChecked(SWITCHES[name] is not None and settings.flag(SWITCHES[name]))
             action.toggled.connect(lambda on: self.switched.emit(name, on))
         else:
             action.triggered.connect(lambda *_: self.pressed.emit(name))
