@@ -9,8 +9,10 @@
 >>> program.set_section(tool=1)
 >>> program.add_line((5, 10, -2), feed_mm_min=100)
 >>> program.add_line((35, 10, -2), feed_mm_min=400)
->>> simulation = stock.simulate(program, {1: swarf.Cutter("flat:d=6,l=20")})
->>> swarf.Mesh.from_stock(stock).write("slot.stl")
+>>> tools = {1: swarf.Cutter("flat:d=6,l=20")}
+>>> surface = swarf.Surface(stock, program, tools)
+>>> simulation = stock.simulate(program, tools)
+>>> swarf.Mesh.from_stock(stock, 0.01, surface=surface).write("slot.stl")
 """
 from ._native import (
     BusyError,

@@ -118,8 +118,17 @@ void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values
 contour_block *swarf_contour_block_at(const contour *work, const int32_t ijk[3]);
 /** The crossing of an edge, which must exist. */
 const contour_crossing *swarf_contour_crossing(const contour *work, const int32_t voxel[3], int axis);
-/** What the exact surface can be within a block's cells, for the caller to destroy; NULL without a surface. */
-swarf_status swarf_contour_near(const contour *work, const contour_block *block, swarf_surface_near **out);
+/** What the exact surface can be in the eight parts of a block, gathered when first asked for: the smaller the box, the
+ *  fewer moves a point has to look at. */
+typedef struct contour_near {
+    const contour *work;
+    const contour_block *block;
+    swarf_surface_near *part[8];
+} contour_near;
+
+/** Of the part that holds a cell of the block, at[] in 0 .. 7; NULL without a surface. Owned by `near`. */
+swarf_status swarf_contour_near_get(contour_near *near, const int at[3], const swarf_surface_near **out);
+void swarf_contour_near_free(contour_near *near);
 
 /** What is known of one cycle, in voxels from the low corner of its cell. */
 typedef struct contour_polygon {

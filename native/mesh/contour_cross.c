@@ -97,25 +97,6 @@ void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values
     }
 }
 
-swarf_status swarf_contour_near(const contour *work, const contour_block *block, swarf_surface_near **out)
-{
-    *out = NULL;
-    if (!work->surface) return SWARF_OK;
-    swarf_surface_near *near;
-    swarf_box box;
-    for (int k = 0; k < 3; k++) {
-        box.lo[k] = work->layout->origin[k] + block->ijk[k] * work->layout->voxel;
-        box.hi[k] = box.lo[k] + SWARF_LEAF_DIM * work->layout->voxel;
-    }
-    SWARF_TRY(swarf_surface_near_create(work->surface, &near));
-    const swarf_status status = swarf_surface_gather(near, work->moves, &box);
-    if (status == SWARF_OK)
-        *out = near;
-    else
-        swarf_surface_near_destroy(near);
-    return status;
-}
-
 static const int stride[3] = {SWARF_HALO * SWARF_HALO, SWARF_HALO, 1};
 
 /* From the field: linear along the edge; the gradient by differences along it and central ones across. */
@@ -170,7 +151,7 @@ static void cross_surface(const swarf_surface_near *near, const double a[3], dou
 }
 
 /* All crossings of a block, in the order of its masks. */
-static void cross_edges(const contour *work, contour_block *block, const float *values, const swarf_surface_near *near)
+static swarf_status cross_edges(const contour *work, contour_block *block, const float *values, contour_near *near)
 {
     const swarf_tree_layout *layout = work->layout;
     contour_crossing *next = block->crossings;
@@ -180,11 +161,14 @@ static void cross_edges(const contour *work, contour_block *block, const float *
                 const int bit = __builtin_ctzll(word), at[3] = {x, bit >> 3, bit & 7};
                 const float *value = values + ((x + 1) * SWARF_HALO + at[1] + 1) * SWARF_HALO + at[2] + 1;
                 cross_field(value, axis, next);
-                if (!near) continue;
+                const swarf_surface_near *surface;
+                SWARF_TRY(swarf_contour_near_get(near, at, &surface));
+                if (!surface) continue;
                 double a[3];
                 for (int k = 0; k < 3; k++) a[k] = layout->origin[k] + (block->ijk[k] + at[k]) * layout->voxel;
-                cross_surface(near, a, layout->voxel, axis, *value < 0, next);
+                cross_surface(surface, a, layout->voxel, axis, *value < 0, next);
             }
+    return SWARF_OK;
 }
 
 swarf_status swarf_contour_cross(contour *work, contour_block *block)
@@ -208,11 +192,10 @@ swarf_status swarf_contour_cross(contour *work, contour_block *block)
     if (count == 0) return SWARF_OK;
     block->crossings = malloc(count * sizeof *block->crossings);
     if (!block->crossings) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for crossings");
-    swarf_surface_near *near;
-    SWARF_TRY(swarf_contour_near(work, block, &near));
-    cross_edges(work, block, values, near);
-    swarf_surface_near_destroy(near);
-    return SWARF_OK;
+    contour_near near = {.work = work, .block = block};
+    const swarf_status status = cross_edges(work, block, values, &near);
+    swarf_contour_near_free(&near);
+    return status;
 }
 
 const contour_crossing *swarf_contour_crossing(const contour *work, const int32_t voxel[3], int axis)

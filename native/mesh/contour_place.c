@@ -93,14 +93,16 @@ static void place_vertex(contour_block *block, const contour_polygon *polygon, c
     block->exact_count += exact && !middle;
 }
 
-static void place_cell(contour *work, contour_block *block, const float *values, const swarf_surface_near *near,
-                       int index, contour_cell *cell, uint32_t *used)
+static swarf_status place_cell(contour *work, contour_block *block, const float *values, contour_near *near, int index,
+                               contour_cell *cell, uint32_t *used)
 {
     const swarf_tree_layout *layout = work->layout;
     const int at[3] = {index >> 6, index >> 3 & 7, index & 7};
     const contour_case *joined = &work->table.entry[cell->config][cell->flip];
     const int calm = (int)(block->calm_mask[at[0]] >> (index & 63) & 1);
     const int middle = (int)(block->middle_mask[at[0]] >> (index & 63) & 1);
+    const swarf_surface_near *surface;
+    SWARF_TRY(swarf_contour_near_get(near, at, &surface));
     contour_polygon polygon = {.voxel = layout->voxel};
     for (int k = 0; k < 3; k++) polygon.origin[k] = layout->origin[k] + (block->ijk[k] + at[k]) * layout->voxel;
     for (int c = 0; c < 8; c++)
@@ -112,11 +114,12 @@ static void place_cell(contour *work, contour_block *block, const float *values,
     for (int cycle = 0; cycle < joined->count; cycle++) {
         double inside[3] = {0.5, 0.5, 0.5};
         gather(work, block, at, joined, cell->config, cycle, &polygon);
-        if (polygon.count > 0) place_vertex(block, &polygon, near, calm, middle, inside);
+        if (polygon.count > 0) place_vertex(block, &polygon, surface, calm, middle, inside);
         for (int k = 0; k < 3; k++)
             block->vertices[*used].xyz[k] = (float)(polygon.origin[k] + inside[k] * layout->voxel);
         (*used)++;
     }
+    return SWARF_OK;
 }
 
 swarf_status swarf_contour_place(contour *work, contour_block *block)
@@ -160,15 +163,15 @@ swarf_status swarf_contour_place(contour *work, contour_block *block)
     block->cells = malloc(cell_count * sizeof *cells);
     block->vertices = malloc(vertex_count * sizeof *block->vertices);
     if (!block->cells || !block->vertices) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for vertices");
-    swarf_surface_near *near;
-    SWARF_TRY(swarf_contour_near(work, block, &near));
+    contour_near near = {.work = work, .block = block};
+    swarf_status status = SWARF_OK;
     uint32_t used = 0, next = 0;
     for (int x = 0; x < 8; x++)
-        for (uint64_t word = block->cell_mask[x]; word; word &= word - 1)
-            place_cell(work, block, values, near, x * 64 + __builtin_ctzll(word), &cells[next++], &used);
-    swarf_surface_near_destroy(near);
+        for (uint64_t word = block->cell_mask[x]; word && status == SWARF_OK; word &= word - 1)
+            status = place_cell(work, block, values, &near, x * 64 + __builtin_ctzll(word), &cells[next++], &used);
+    swarf_contour_near_free(&near);
     memcpy(block->cells, cells, cell_count * sizeof *cells);
-    return SWARF_OK;
+    return status;
 }
 
 /* In voxels: triangles less high than this are avoided. */

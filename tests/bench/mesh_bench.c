@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* mesh_bench PROGRAM N THREADS ERROR [REPEAT [FILE.stl]]: make meshes of a fixed job, with OpenVDB's mesher and by dual
- * contouring in turn, and print one line of JSON for each pair and, at last, their least times side by side.
+/* mesh_bench PROGRAM N THREADS ERROR [REPEAT [FILE.stl]]: make meshes of a fixed job, with OpenVDB's mesher, by dual
+ * contouring of the field and on the exact surface in turn, and print one line of JSON for each round and, at last,
+ * their least times side by side.
  *
  * PROGRAM is bear or cameo (see shared data); N the voxels along the longest edge of the stock; ERROR in voxels. With a
  * FILE the time from reading the program to having written the mesh is printed too.
@@ -10,19 +11,26 @@
 
 #include "jobs.h"
 
-static swarf_stock *cut(const bench_job *j, double voxel)
+/* The stock after the job, and its exact surface. */
+static swarf_stock *cut(const bench_job *j, double voxel, swarf_surface **surface)
 {
+    swarf_program *program = bench_job_program(j);
+    const size_t moves = swarf_program_move_count(program), sections = swarf_program_section_count(program);
+    swarf_tool *tools = calloc(sections + 1, sizeof *tools);
     swarf_cutter *cutter = NULL;
-    size_t count = 0;
-    swarf_path *paths = bench_job_paths(j, &count);
+    swarf_simulation *simulation = NULL;
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = voxel;
     swarf_stock *stock = NULL;
     bench_must(swarf_cutter_parse(j->cutter, &cutter));
+    for (size_t i = 0; i < sections; i++) tools[i] = (swarf_tool){swarf_program_sections(program)[i].tool, 0, cutter};
     bench_must(swarf_stock_create_box(&j->box, &options, &stock));
-    bench_must(swarf_stock_cut(stock, cutter, paths, count, NULL));
+    bench_must(swarf_surface_create(stock, program, tools, sections, NULL, surface));
+    bench_must(swarf_stock_simulate(stock, program, 0, moves, tools, sections, NULL, NULL, &simulation));
+    swarf_simulation_destroy(simulation);
     swarf_cutter_release(cutter);
-    free(paths);
+    swarf_program_release(program);
+    free(tools);
     return stock;
 }
 
@@ -35,41 +43,50 @@ int main(int count, char **argument)
     }
     bench_must(swarf_threads_set(atoi(argument[3])));
     const double voxel = bench_job_voxel(j, atoi(argument[2])), t_begin = bench_now();
-    swarf_stock *stock = cut(j, voxel);
+    swarf_surface *surface = NULL;
+    swarf_stock *stock = cut(j, voxel, &surface);
     const double cut_s = bench_now() - t_begin;
-    double field = 0, best[2] = {1e30, 1e30};
+    double field = 0, best[3] = {1e30, 1e30, 1e30};
     bench_must(swarf_stock_volume(stock, &field));
     swarf_contour_options options = swarf_contour_options_default();
     options.error_mm = atof(argument[4]) * voxel;
     for (int repeat = count > 5 ? atoi(argument[5]) : 3; repeat > 0; repeat--) {
-        swarf_mesh *uniform = NULL, *mesh = NULL;
-        swarf_contour_report report;
+        swarf_mesh *uniform = NULL, *mesh = NULL, *exact = NULL;
+        swarf_contour_report report, exact_report;
         const double t_uniform = bench_now();
         bench_must(swarf_mesh_create_stock(stock, 0, NULL, &uniform));
         const double t_contour = bench_now();
+        options.surface = NULL;
         bench_must(swarf_mesh_contour(stock, &options, NULL, &mesh, &report));
+        const double t_exact = bench_now();
+        options.surface = surface;
+        bench_must(swarf_mesh_contour(stock, &options, NULL, &exact, &exact_report));
         const double t_end = bench_now();
         best[0] = t_contour - t_uniform < best[0] ? t_contour - t_uniform : best[0];
-        best[1] = t_end - t_contour < best[1] ? t_end - t_contour : best[1];
+        best[1] = t_exact - t_contour < best[1] ? t_exact - t_contour : best[1];
+        best[2] = t_end - t_exact < best[2] ? t_end - t_exact : best[2];
         printf("{\"program\": \"%s\", \"resolution\": %s, \"threads\": %d, \"error_voxels\": %s, \"openvdb_s\": %.4f, "
-               "\"contour_s\": %.4f, \"openvdb_triangles\": %zu, \"triangles\": %zu, \"field_mm3\": %.4f, "
-               "\"openvdb_mm3\": %.4f, \"mesh_mm3\": %.4f, \"error_mm\": %.6f, \"cut_each_other\": %zu, "
-               "\"left\": %zu}\n",
-               j->name, argument[2], swarf_threads(), argument[4], t_contour - t_uniform, t_end - t_contour,
-               swarf_mesh_triangles(uniform).triangle_count, report.triangles, field,
-               swarf_mesh_topology(uniform).volume_mm3, swarf_mesh_topology(mesh).volume_mm3, report.error_mm,
-               report.intersections_found, report.intersections_left);
+               "\"contour_s\": %.4f, \"exact_s\": %.4f, \"openvdb_triangles\": %zu, \"triangles\": %zu, "
+               "\"exact_triangles\": %zu, \"field_mm3\": %.4f, \"openvdb_mm3\": %.4f, \"mesh_mm3\": %.4f, "
+               "\"exact_mm3\": %.4f, \"error_mm\": %.6f, \"cut_each_other\": [%zu, %zu], \"left\": [%zu, %zu]}\n",
+               j->name, argument[2], swarf_threads(), argument[4], t_contour - t_uniform, t_exact - t_contour,
+               t_end - t_exact, swarf_mesh_triangles(uniform).triangle_count, report.triangles, exact_report.triangles,
+               field, swarf_mesh_topology(uniform).volume_mm3, swarf_mesh_topology(mesh).volume_mm3,
+               swarf_mesh_topology(exact).volume_mm3, exact_report.error_mm, report.intersections_found,
+               exact_report.intersections_found, report.intersections_left, exact_report.intersections_left);
         fflush(stdout);
         if (repeat == 1 && count > 6) {
             const double t_write = bench_now();
-            bench_must(swarf_mesh_write(mesh, argument[6], NULL));
-            printf("from the program to %s: %.3f s\n", argument[6], cut_s + best[1] + bench_now() - t_write);
+            bench_must(swarf_mesh_write(exact, argument[6], NULL));
+            printf("from the program to %s: %.3f s\n", argument[6], cut_s + best[2] + bench_now() - t_write);
         }
         swarf_mesh_release(uniform);
         swarf_mesh_release(mesh);
+        swarf_mesh_release(exact);
     }
-    printf("least: OpenVDB %.3f s, contour %.3f s, %.2f times as long; peak %.0f MiB\n", best[0], best[1],
-           best[1] / best[0], (double)swarf_memory_peak() / 1048576);
+    printf("least: OpenVDB %.3f s, contour %.3f s, %.2f times as long; exact %.3f s, %.2f times; peak %.0f MiB\n",
+           best[0], best[1], best[1] / best[0], best[2], best[2] / best[0], (double)swarf_memory_peak() / 1048576);
+    swarf_surface_release(surface);
     swarf_stock_destroy(stock);
     return 0;
 }
