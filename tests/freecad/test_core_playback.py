@@ -207,14 +207,22 @@ def go(session, place):
     raise AssertionError("never there")
 
 
-def test_any_way_to_a_move_gives_the_same_stock(swarf, session, table):
-    data = job_data(table)
-    job = native.to_job(data)
+def test_any_way_to_a_place_gives_the_same_stock(swarf, session, table):
+    job = native.to_job(job_data(table))
     rng = random.Random(11)
-    for place in [rng.randrange(len(table) + 1) for _ in range(25)] + [0, len(table)]:
+    places = [rng.randrange(len(table)) + rng.choice((0.0, 0.25, 0.7)) for _ in range(25)] + [0.0, float(len(table))]
+    for place in places:
         fresh = swarf.Stock.box((0, 0, -10), (40, 20, 0), 0.5)
-        fresh.simulate(job.program, job.tools, first=0, count=place)
+        swarf.History(fresh, job.program, job.tools).seek(int(place), place - int(place))
         assert go(session, place).hash() == fresh.hash(), place
+
+
+def test_the_stock_follows_the_cutter_within_a_move(session, table):
+    long = max(range(len(table)), key=lambda index: session.overview.removed and session.clock.time_of(index + 1) -
+               session.clock.time_of(index))
+    volumes = [go(session, long + part).volume() for part in (0.0, 0.25, 0.5, 0.75, 1.0, 0.5)]
+    assert volumes[:5] == sorted(volumes[:5], reverse=True) and volumes[0] > volumes[4]
+    assert volumes[5] == volumes[2]
 
 
 def test_overview_is_the_whole_program(swarf, session, table):

@@ -157,10 +157,12 @@ struct things {
     swarf_program *program, *language;
     swarf_notes *notes;
     swarf_cutter *cutter;
-    swarf_stock *stock;
+    swarf_stock *stock, *walked;
+    swarf_history *history;
     swarf_simulation *simulation;
     swarf_mesh *mesh, *welded;
     double volume;
+    uint64_t hash; /* of the history's stock where its walk ends */
 };
 
 static swarf_status read_program(struct things *t)
@@ -204,6 +206,30 @@ static swarf_status measure(struct things *t)
     return swarf_stock_volume(t->stock, &t->volume);
 }
 
+static swarf_status make_history(struct things *t)
+{
+    const swarf_tool tool = {.number = 1, .cutter = t->cutter};
+    const swarf_box box = {{0, 0, 0}, {10, 10, 10}};
+    swarf_stock_options options = swarf_stock_options_default();
+    swarf_history_options limit = swarf_history_options_default();
+    options.voxel_mm = 0.5;
+    limit.memory_limit = 60000; /* so that records are made one */
+    swarf_status status = t->walked ? SWARF_OK : swarf_stock_create_box(&box, &options, &t->walked);
+    if (status == SWARF_OK) status = swarf_history_create(t->walked, t->program, &tool, 1, &limit, &t->history);
+    return status;
+}
+
+/* Forward, back and forward again; a walk that failed anywhere is walked again from there. */
+static swarf_status walk(struct things *t)
+{
+    const size_t count = swarf_program_move_count(t->program), places[] = {count, 2, count - 1, 0, 4};
+    for (int i = 0; i < 5; i++) {
+        const swarf_status status = swarf_history_seek(t->history, places[i], i == 4 ? 0.5 : 0, NULL);
+        if (status != SWARF_OK) return status;
+    }
+    return swarf_stock_hash(t->walked, &t->hash);
+}
+
 static swarf_status make_mesh(struct things *t)
 {
     return swarf_mesh_create_stock(t->stock, 0, NULL, &t->mesh);
@@ -226,6 +252,8 @@ static const struct step {
     {"make the stock", make_stock},
     {"simulate", simulate},
     {"measure", measure},
+    {"make a history", make_history},
+    {"walk through it", walk},
     {"make the mesh", make_mesh},
     {"weld the mesh", weld_mesh},
 };
@@ -235,6 +263,8 @@ static void release(struct things *t)
     swarf_mesh_release(t->welded);
     swarf_mesh_release(t->mesh);
     swarf_simulation_destroy(t->simulation);
+    swarf_history_destroy(t->history);
+    swarf_stock_destroy(t->walked);
     swarf_stock_destroy(t->stock);
     swarf_cutter_release(t->cutter);
     swarf_program_release(t->program);
@@ -246,8 +276,10 @@ static void release(struct things *t)
 struct round {
     size_t fail;     /* the number of the allocation that fails, 0: none */
     double expected; /* volume at the end, 0: not known yet */
+    uint64_t expected_hash;
     size_t asked;
     double volume;
+    uint64_t hash;
 };
 
 /* A step that comes back without memory is asked again: then it succeeds, and the result is that of a round in which
@@ -271,8 +303,9 @@ static void *play_round(void *argument)
     release(&t);
     round->asked = atomic_load(&asked);
     round->volume = t.volume;
+    round->hash = t.hash;
     CHECK(ok);
-    if (ok && round->expected > 0) CHECK(t.volume == round->expected);
+    if (ok && round->expected > 0) CHECK(t.volume == round->expected && t.hash == round->expected_hash);
     return NULL;
 }
 
@@ -301,7 +334,7 @@ int main(void)
     CHECK(second.volume > 500 && second.volume < 1000);
     CHECK(second.asked > 100);
     for (size_t k = 1; k <= second.asked; k++) {
-        struct round round = {.fail = k, .expected = second.volume};
+        struct round round = {.fail = k, .expected = second.volume, .expected_hash = second.hash};
         run_round(&round);
         CHECK(atomic_load(&refused));
     }

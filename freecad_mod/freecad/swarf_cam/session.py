@@ -18,8 +18,8 @@ from .core.listing import Listing
 from .core.playback import Playback
 from .core.transport import STOP_FINDING, STOP_OPERATION, STOP_TOOL_CHANGE
 
-# Share of the memory a simulation may take that kept copies of the stock may take together.
-COPIES_SHARE = 2.0
+# Memory for going back, as a share of what the stock may take.
+HISTORY_SHARE = 2.0
 
 # Rays per edge of a pixel at rest.
 SAMPLES = 3
@@ -109,63 +109,40 @@ class Session:
         self.listing = Listing(data.moves, data.operations)
         self._keywords = known_keywords()
         self._swarf = swarf
-        limit = COPIES_SHARE * native.estimate(*self.box, voxel_mm)
-        self._playback = Playback(stock, self.program, self.tools, self._runs(), limit)
-        self.overview = self._look_ahead(lambda done: progress(OPEN_SHARE + (1 - OPEN_SHARE) * done))
+        self.overview = self._look_ahead(stock, lambda done: progress(OPEN_SHARE + (1 - OPEN_SHARE) * done))
         self.tool_changes = [float(index) for index in range(len(data.moves)) if self._is_tool_change(index)]
         self.stops = {STOP_OPERATION: [float(begin) for begin in self.listing.operation_begin[1:]],
                       STOP_TOOL_CHANGE: self.tool_changes,
                       STOP_FINDING: sorted({place for place, _, _ in self.overview.findings})}
-        self._scene, self._scene_of = None, None
         self._coarse = 1
+        self._scene = swarf.Scene(stock)
         self._exact = hasattr(swarf.Scene, "set_surface")  # the native module can show more than the voxels
-
-    def _runs(self):
-        """(first move, tool) of each run of moves with one tool."""
-        result = [(0, self.tool_at(0.0))]
-        sections, rows = self.data.moves.sections, self.data.moves.rows
-        for index, section in enumerate(rows[2::moves.COLUMNS]):
-            tool = sections[int(section)][0]
-            if tool != result[-1][1]:
-                result.append((index, tool))
-        return result
+        if self._exact:
+            self._scene.set_surface(stock, self.program, self.tools)  # while it is the first one
+        limit = int(HISTORY_SHARE * native.estimate(*self.box, voxel_mm))
+        self._playback = Playback(swarf.History(stock, self.program, self.tools, memory_limit=limit))
 
     def _is_tool_change(self, index):
         row = self.data.moves.row(index)
         return row[0] == moves.EVENT and row[1] == moves.TOOL_CHANGE
 
-    def _look_ahead(self, progress):
-        """Cut it all once: what each operation removes, what is noticed, and copies to go back to."""
-        count = len(self.data.moves)
-        result = Overview(removed=[0.0] * len(self.data.moves.operations), volume_initial=self._playback.stock.volume())
-        seen = set()
-        ends = sorted({begin for begin in self.listing.operation_begin if begin > 0} | {count})
-        if len(ends) == 1:  # one long operation: halves, each of which is kept
-            ends.insert(0, count // 2)
-        for end in ends:
-            first = self._playback.at
-            done = self._playback.play_to(end, lambda part: progress((first + part * (end - first)) / max(count, 1)))
-            result.removed = [a + b for a, b in zip(result.removed, done.removed_by_operation)]
-            for item in done.findings:
-                if (item.operation, item.text) not in seen:
-                    seen.add((item.operation, item.text))
-                    result.findings.append((float(max(item.move, 0)), item.severity, item.text))
-            self._playback.keep()
-        result.volume_final = self._playback.stock.volume()
-        return result
+    def _look_ahead(self, stock, progress):
+        """Cut a copy of the stock once: what each operation removes, what is noticed."""
+        done = stock.copy().simulate(self.program, self.tools, progress=progress)
+        findings, seen = [], set()
+        for item in done.findings:
+            if (item.operation, item.text) not in seen:
+                seen.add((item.operation, item.text))
+                findings.append((float(max(item.move, 0)), item.severity, item.text))
+        return Overview(list(done.removed_by_operation), done.volume_initial, done.volume_final, findings)
 
-    def step(self, move, seconds, progress=None):
-        """Go towards standing after a move, for about so many seconds; where it stands then."""
-        return self._playback.step(move, seconds, progress)
+    def step(self, place, seconds, progress=None):
+        """Go towards a place, for about so many seconds; where it stands then."""
+        return self._playback.step(place, seconds, progress)
 
     def _current_scene(self):
-        if self._scene_of is not self._playback.stock:
-            self._scene_of = self._playback.stock
-            self._scene = self._swarf.Scene(self._scene_of)
-            if self._exact:
-                self._scene.set_surface(self._playback.first, self.program, self.tools)
         if self._exact:
-            self._scene.set_moves(self._playback.at)
+            self._scene.set_moves(self._playback.moves)
         return self._scene
 
     def _look(self, view, place):
@@ -248,8 +225,8 @@ class Session:
         home = self._playback.at
         try:
             for number, place in enumerate(places):
-                while self._playback.at != int(place):
-                    self.step(int(place), 0.1, progress)
+                while self._playback.at != place:
+                    self.step(place, 0.1, progress)
                 self.write_png(os.path.join(folder, "frame-%05d.png" % number), view, place, progress)
                 if on_frame:
                     on_frame((number + 1) / len(places))

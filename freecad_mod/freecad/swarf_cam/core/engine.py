@@ -26,7 +26,7 @@ class Engine:
     """open_session(progress) -> the session that cuts and draws; listener has opened(session), frame(frame),
     progress(fraction), failed(error) and finished(), which comes last.
 
-    A session has step(move, seconds, progress) -> move it stands after, and draw(view, place, budget_ms, progress) ->
+    A session has step(place, seconds, progress) -> place it stands at, and draw(view, place, budget_ms, progress) ->
     frame, budget_ms None for as good as it gets. Both raise cancelled_type when a progress answered true.
     """
 
@@ -94,7 +94,7 @@ class Engine:
 
     def _work(self, session):
         drawn, sharp, failed = -1, True, -1
-        at = 0
+        at = 0.0
         while True:
             with self._changed:
                 while not (self._stopping or self._calls or self._revision != drawn or not sharp):
@@ -109,12 +109,11 @@ class Engine:
             if revision == drawn and self._wait_for_rest(revision):
                 continue
             try:
-                if revision != drawn or at != int(place):
-                    at = session.step(int(place), SLICE_SECONDS, self._break_off)
-                    shown = place if at == int(place) else float(at)
+                if revision != drawn or at != place:
+                    at = session.step(place, SLICE_SECONDS, self._break_off)
                     if view is not None:
-                        self._listener.frame(session.draw(view, shown, BUDGET_MS, self._break_off))
-                    drawn = revision if at == int(place) else -1
+                        self._listener.frame(session.draw(view, at, BUDGET_MS, self._break_off))
+                    drawn = revision if at == place else -1
                     sharp = view is None
                 else:
                     self._listener.frame(session.draw(view, place, None, lambda _: self._is_old(revision)))
