@@ -251,9 +251,9 @@ def make(done: Verification, report: dict[str, Any], progress: Optional[Callable
         f"{report['volume_mm3']['initial']:,.1f} mm³, left {report['volume_mm3']['final']:,.1f} mm³, design "
         f"{volumes.design_mm3:,.1f} mm³.</p>",
         "<h2>Tools</h2>",
-        table(["", "name", "diameter, mm", "teeth"],
-              [[f"T{tool['number']}", tool["name"], f"{tool['diameter_mm']:.4g}", job.teeth.get(tool["number"], "–")]
-               for tool in report["tools"]], (2, 3)),
+        table(["", "name", "diameter, mm", "teeth", "holder"],
+              [[f"T{tool['number']}", tool["name"], f"{tool['diameter_mm']:.4g}", job.teeth.get(tool["number"], "–"),
+                tool["holder"] or "none: not checked"] for tool in report["tools"]], (2, 3)),
         "".join(f"<p class=note>{html.escape(note)}</p>" for note in job.notes),
         f"<p class=dim>Swarf {html.escape(report['version'])}; {report['threads']} threads, {report['isa']}; cutting "
         f"{report['seconds']['cut']:.2f} s, comparing {report['seconds'].get('compare', 0.0):.2f} s.</p></body></html>",

@@ -7,7 +7,7 @@ import os
 import sys
 from typing import Sequence
 
-from . import _native, gcode, readers, specs
+from . import _native, gcode, holders, readers, specs
 from .console import one_line
 from .job import Job
 from .progress import Bar
@@ -22,6 +22,9 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument("input", metavar="INPUT", help="a G-code file, or a .FCStd file where the add-on is installed")
     command.add_argument("--job", metavar="NAME", help="the job in a .FCStd file, if it has several")
     command.add_argument("--stock", metavar="SPEC", help=specs.STOCK_HELP)
+    command.add_argument("--holder", metavar="N=NAME,stickout=MM", action="append", default=[],
+                         help="what holds tool N, e.g. 1=SK40-ER16,stickout=35 or 1=form:0/0:20/0:20/50,stickout=40 "
+                              "(repeatable)")
     size = command.add_mutually_exclusive_group()
     size.add_argument("--voxel", metavar="MM", type=float, help="edge of a voxel")
     size.add_argument("--resolution", metavar="N", type=float,
@@ -49,11 +52,28 @@ def read_job(arguments: argparse.Namespace, bar: Bar) -> Job:
         job.tools[number], job.tool_names[number] = cutter, text
         if teeth:
             job.teeth[number] = teeth
+    add_holders(job, arguments.holder)
     if len(job.program) == 0:
         raise ValueError(f"{arguments.input}: the program has no moves: there is nothing to simulate")
     if os.path.splitext(arguments.input)[1].lower() in readers.GCODE_SUFFIXES:
         check_gcode_job(job, arguments.input)
     return job
+
+
+def add_holders(job: Job, words: Sequence[str]) -> None:
+    """Put the tools of the job into the holders of ``--holder``; ValueError for tools that are not there."""
+    given = set()
+    for word in words:
+        number, name, stickout, projection = holders.parse(word)
+        if number not in job.tools:
+            raise ValueError(f"holder {word!r}: there is no tool {number}")
+        if number in given:
+            raise ValueError(f"holder {word!r}: tool {number} has one already")
+        given.add(number)
+        holder = name if name.lower().startswith("form:") else holders.find(name, projection)
+        job.tools[number], notes = holders.hold(job.tools[number], holder, stickout, f"tool {number}")
+        job.holders[number] = holders.describe(name, stickout)
+        job.notes += notes
 
 
 def check_gcode_job(job: Job, path: str) -> None:
@@ -64,8 +84,9 @@ def check_gcode_job(job: Job, path: str) -> None:
         number, cutter = next(iter(job.tools.items()))
         job.tools[-1] = cutter
         job.tool_names[-1] = job.tool_names[number]
-        if number in job.teeth:
-            job.teeth[-1] = job.teeth[number]
+        for known in (job.teeth, job.holders):
+            if number in known:
+                known[-1] = known[number]
         job.notes.append(f"the program names no tool: tool {number} is used")
     missing = [number for number in used if number not in job.tools]
     if -1 in missing:

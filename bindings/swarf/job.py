@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, Optional
 
 from ._native import Cutter, Mesh, Program
+from .accept import Acceptance
 
 
 @dataclass
@@ -32,4 +33,6 @@ class Job:
     stock: Optional[dict[str, Any]] = None
     design: Optional[Mesh] = None
     notes: list[str] = field(default_factory=list)
+    holders: dict[int, str] = field(default_factory=dict)  #: what holds each tool, for people; the cutters have it
+    accepted: list[Acceptance] = field(default_factory=list)  #: findings that the job's document accepts
     teeth: dict[int, int] = field(default_factory=dict)  #: cutting edges around each tool, where they are known

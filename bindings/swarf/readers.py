@@ -19,6 +19,9 @@ CAMOTICS_SUFFIX = ".camotics"
 #: Entry point group of further readers.
 GROUP = "swarf.readers"
 
+#: Entry point group of readers of designs: functions ``read(path, deflection_mm, progress=None) -> Mesh``.
+DESIGNS = "swarf.designs"
+
 Reader = Callable[..., Job]
 
 
@@ -26,6 +29,20 @@ def readers() -> dict[str, importlib.metadata.EntryPoint]:
     """Registered readers by suffix with its dot; none is imported."""
     found = importlib.metadata.entry_points(group=GROUP)
     return {"." + entry.name.lower(): entry for entry in found}
+
+
+def design_suffixes() -> dict[str, importlib.metadata.EntryPoint]:
+    """Registered readers of designs by suffix with its dot; none is imported."""
+    return {"." + entry.name.lower(): entry for entry in importlib.metadata.entry_points(group=DESIGNS)}
+
+
+def load(entry: importlib.metadata.EntryPoint, path: str, suffix: str) -> Callable[..., Any]:
+    """What an entry point names. OSError tells the file whose reader cannot be had."""
+    try:
+        loaded: Callable[..., Any] = entry.load()
+        return loaded
+    except (ImportError, AttributeError) as error:
+        raise OSError(f"{path}: the reader for {suffix} cannot be loaded ({entry.value}): {error}") from error
 
 
 def read_gcode(
@@ -59,8 +76,5 @@ def read(
         hint = "" if ".fcstd" in known else "; .FCStd needs the FreeCAD add-on of Swarf"
         suffixes = ", ".join([*GCODE_SUFFIXES, CAMOTICS_SUFFIX, *sorted(known)])
         raise ValueError(f"{path}: unknown suffix {suffix!r}; known: {suffixes}{hint}")
-    try:
-        reader: Reader = entry.load()
-    except (ImportError, AttributeError) as error:
-        raise OSError(f"{path}: the reader for {suffix} cannot be loaded ({entry.value}): {error}") from error
+    reader: Reader = load(entry, path, suffix)
     return reader(path, job=job, progress=progress)

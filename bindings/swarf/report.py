@@ -57,6 +57,7 @@ def make(
                 "name": job.tool_names.get(number, ""),
                 "diameter_mm": 2 * cutter.radius(),
                 "flutes_mm": list(cutter.extent()),
+                "holder": job.holders.get(number, "own shape" if cutter.radius("holder") > 0 else None),
             }
             for number, cutter in sorted(job.tools.items())
         ],

@@ -9,6 +9,7 @@ from typing import Any, Callable, Optional, Sequence
 
 from . import accept as accepting
 from . import loads as loading
+from . import readers
 from ._native import Check, Cluster, Deviation, Mesh, Scene, Solid, Stock, compare_place, measure_deviation
 from .accept import Acceptance
 from .job import Job
@@ -64,13 +65,26 @@ class Verification:
         return Scene(self.result.stock)
 
 
-def read_design(path: str) -> Mesh:
-    """The design in a mesh file. ValueError for an unknown suffix; OSError, FormatError."""
+#: Designs that a CAD program has to read, by suffix; its reader is an entry point, see readers.DESIGNS.
+CAD_SUFFIXES = (".step", ".stp", ".brep", ".brp", ".iges", ".igs", ".fcstd")
+
+
+def read_design(path: str, tolerance: float = 0.05, progress: Optional[Callable[[float], Any]] = None) -> Mesh:
+    """The design (or a fixture) in a mesh file, or in a CAD file whose faces become triangles no farther away than a fifth
+    of the tolerance (mm). ValueError for an unknown suffix, and where the reader that it needs is missing; OSError,
+    FormatError, what the reader raises."""
     suffix = os.path.splitext(path)[1].lower()
-    if suffix not in DESIGN_SUFFIXES:
-        raise ValueError(f"{path}: unknown suffix {suffix!r}; a design is {', '.join(DESIGN_SUFFIXES)} "
-                         "(or the model of the job in a .FCStd file)")
-    return Mesh.read(path)
+    if suffix in DESIGN_SUFFIXES:
+        return Mesh.read(path)
+    known = readers.design_suffixes()
+    if suffix in known:
+        mesh: Mesh = readers.load(known[suffix], path, suffix)(path, 0.2 * tolerance, progress=progress)
+        return mesh
+    if suffix in CAD_SUFFIXES:
+        raise ValueError(f"{path}: {suffix} files are read through FreeCAD and the add-on of Swarf, which is not "
+                         f"installed; without it a design is {', '.join(DESIGN_SUFFIXES)}")
+    raise ValueError(f"{path}: unknown suffix {suffix!r}; a design is "
+                     f"{', '.join([*DESIGN_SUFFIXES, *sorted(known or CAD_SUFFIXES)])}")
 
 
 def verify(
@@ -100,7 +114,7 @@ def verify(
     looks for are findings too, as are moves that cannot be simulated (turned axes) and
     operations that remove nothing; ``fixtures`` and ``clearance`` are
     handed to it. ``loads`` measures what each move asks of its tool; beyond ``limits`` (see swarf.loads) it is a
-    warning. Findings that ``accept`` knows do not fail. ValueError without a design or moves; GeometryError where the
+    warning. Findings that ``accept`` or the job's document knows do not fail. ValueError without a design or moves; GeometryError where the
     design encloses nothing; whatever make_stock() and Stock.check() raise.
     """
     mesh = job.design if design is None else design
@@ -137,9 +151,9 @@ def verify(
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits)
     made.findings = [*findings_of(job, checked), *_load_findings(job, checked, limits),
-                     *_design_findings(solid, first, mesh),
+                     *_design_findings(solid, first, mesh), *_fixture_findings(first, fixtures, clamps),
                      *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
-    for idle in accepting.apply(accept, made.findings):
+    for idle in accepting.apply([*job.accepted, *accept], made.findings):
         made.findings.append(Verdict("note", f"nothing is found any more of what is accepted because {idle.reason!r}",
                                      "acceptance", idle.operation, idle.line or 0, place=idle.place))
     return made
@@ -198,6 +212,26 @@ def _design_findings(solid: Solid, first: Stock, mesh: Mesh) -> list[Verdict]:
     if solid.crossing_triangles:
         found.append(Verdict("note", f"{solid.crossing_triangles} of the design's {mesh.triangle_count} triangles cross "
                              "or touch others; it is taken as the union of what they enclose", "design"))
+    return found
+
+
+def _fixture_findings(first: Stock, fixtures: Sequence[Mesh], solids: Sequence[Solid]) -> list[Verdict]:
+    """Fixtures that reach into the stock before anything is cut: they stand elsewhere, or the stock does. Looked for at
+    their corners and the middles of their triangles, and at the corners of the stock's box."""
+    found = []
+    box = first.bounding_box()
+    corners = [] if box is None else [tuple(box[i >> k & 1][k] for k in range(3)) for i in range(8)]
+    for number, (fixture, solid) in enumerate(zip(fixtures, solids), 1):
+        vertices = fixture.vertices.tolist()
+        points = vertices + [tuple(sum(vertices[index][k] for index in triangle) / 3 for k in range(3))
+                             for triangle in fixture.triangles.tolist()]
+        depths = [(-value, point) for value, point in zip(first.sample(points), points)]
+        depths += [(-value, corner) for value, corner in zip(solid.distance(corners), corners)] if corners else []
+        depth, place = max(depths, key=lambda entry: entry[0])
+        if depth > 0.35 * first.voxel:
+            found.append(Verdict("warning", f"fixture {number} reaches into the stock before anything is cut, at least "
+                                 f"{depth:.3g} mm deep: fixture or stock are not where they should be", "fixture",
+                                 place=(place[0], place[1], place[2]), amount=depth))
     return found
 
 

@@ -22,7 +22,8 @@ def sample(stock=None):
     table.add_arc((1, 2, 3), (0, 0, 0), moves.PLANE_YZ, False, 2, 90.0, 7)
     mesh = (array.array("d", [0, 0, 0, 1, 0, 0, 0, 1, 0.1]), array.array("I", [0, 1, 2]))
     tools = {3: ("Fräser", [("flutes", [(0.0, 0.0, 0.0), (3.0, 0.0, 0.1), (0.0, 9.0, 0.0)])])}
-    return JobData("Jöb", table, tools, stock or {"kind": "mesh", "mesh": mesh}, mesh, ["a note"], teeth={3: 4})
+    return JobData("Jöb", table, tools, stock or {"kind": "mesh", "mesh": mesh}, mesh, ["a note"], teeth={3: 4},
+                   holders={3: ("ER16", 35.5)}, accepted=[{"reason": "so", "line": 3}])
 
 
 def test_round_trip(tmp_path):
@@ -31,8 +32,9 @@ def test_round_trip(tmp_path):
     again = exchange.read(str(tmp_path))
     assert again.moves.rows == job.moves.rows
     assert again.moves.sections == job.moves.sections and again.moves.operations == job.moves.operations
-    assert (again.name, again.tools, again.stock, again.design, again.notes, again.teeth) == (
-        job.name, job.tools, job.stock, job.design, job.notes, job.teeth)
+    assert (again.name, again.tools, again.stock, again.design, again.notes, again.teeth,
+            again.holders, again.accepted) == (
+        job.name, job.tools, job.stock, job.design, job.notes, job.teeth, job.holders, job.accepted)
 
 
 def test_box_without_design(tmp_path):

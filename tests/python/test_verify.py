@@ -190,3 +190,14 @@ def test_verify_reads_gcode_as_it_is_told(tmp_path):
     assert done.returncode == 0 and "passed" in done.stdout  # no move came near: see --complete
     assert "removes nothing" in done.stderr and "not reached" in done.stderr
     assert command(tmp_path, lines, "--block-delete", "--complete").returncode == 1
+
+
+def test_fixtures_in_the_stock():
+    job = faced(1.0)
+    inside = swarf.verify(job, DESIGN, voxel=0.5, loads=False, fixtures=[box((38.0, 10.0, -9.0), (50.0, 20.0, -4.0))])
+    assert any("fixture 1 reaches into the stock" in found.text and found.severity == "warning" and found.amount > 1
+               for found in inside.findings)
+    around = swarf.verify(job, DESIGN, voxel=0.5, loads=False, fixtures=[box((-50, -50, -60), (90, 90, -2.0))])
+    assert any("fixture 1 reaches into the stock" in found.text for found in around.findings)
+    beside = swarf.verify(job, DESIGN, voxel=0.5, loads=False, fixtures=[box((40.0, 0.0, -9.0), (50.0, 30.0, -4.0))])
+    assert not beside.findings

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import time
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 from .. import accept, document, inputs, loads, report
 from ..console import DONE, FINDINGS, check_outputs, one_line
 from ..progress import Bar
-from ..verify import DESIGN_SUFFIXES, Verdict, read_design, verify
+from ..verify import CAD_SUFFIXES, DESIGN_SUFFIXES, Verdict, read_design, verify
 
 REPORT_SUFFIXES = (".html", ".json")
 
@@ -25,7 +26,8 @@ def add(subparsers: Any) -> None:
     )
     inputs.add_arguments(command)
     command.add_argument("--design", metavar="FILE",
-                         help=f"{' '.join(DESIGN_SUFFIXES)}; default: the model of the job in a .FCStd file")
+                         help=f"{' '.join(DESIGN_SUFFIXES)}, with FreeCAD {' '.join(CAD_SUFFIXES)}; default: the model "
+                              "of the job in a .FCStd file")
     command.add_argument("--tolerance", metavar="MM", type=float, default=0.05, help="both ways (default 0.05)")
     command.add_argument("--excess", metavar="MM", type=float, help="tolerance for material left")
     command.add_argument("--gouge", metavar="MM", type=float, help="tolerance for material missing")
@@ -33,7 +35,7 @@ def add(subparsers: Any) -> None:
     command.add_argument("--complete", action="store_true",
                          help="material left where no move went is an error, not a warning")
     command.add_argument("--fixture", metavar="FILE", action="append", default=[],
-                         help="a mesh that nothing may touch: clamps, the vice (repeatable)")
+                         help="what nothing may touch: clamps, the vice; files as designs (repeatable)")
     command.add_argument("--clearance", metavar="MM", type=float, default=0.0,
                          help="warn where the holder comes nearer to the stock")
     command.add_argument("--limit", metavar="[N:]KIND=VALUE", action="append", default=[], type=_limit,
@@ -75,11 +77,15 @@ def run(arguments: argparse.Namespace) -> int:
     limits = loads.merge({} if arguments.limits is None else loads.read(arguments.limits, arguments.material),
                          *arguments.limit)
     accepted = [] if arguments.accept is None else accept.read(arguments.accept)
-    fixtures = [read_design(path) for path in arguments.fixture]
-    design = None if arguments.design is None else read_design(arguments.design)
+    tightest = min(arguments.tolerance if side is None else side for side in (arguments.excess, arguments.gouge))
+    if not (math.isfinite(tightest) and tightest > 0):
+        raise ValueError(f"tolerance {tightest:g}: wanted a number above 0")
 
     with Bar() as bar:
         started = time.perf_counter()
+        fixtures = [read_design(path, tightest) for path in arguments.fixture]
+        design = None if arguments.design is None else read_design(
+            arguments.design, tightest, lambda fraction: bar("read", fraction))
         job = inputs.read_job(arguments, bar)
         if design is None and job.design is None:
             raise ValueError(f"{arguments.input}: it has no design to verify against; give --design FILE")

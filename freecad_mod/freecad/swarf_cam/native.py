@@ -70,6 +70,34 @@ def to_cutters(tools):
     return result
 
 
+def hold(cutters, data):
+    """Put the cutters of a JobData into their holders, in place -> (number -> text, notes). JobError names the tool
+    whose holder is impossible or has no stickout."""
+    library = importlib.import_module(load().__name__ + ".holders")
+    texts, notes = {}, []
+    for number, (name, stickout) in data.holders.items():
+        if number not in cutters:
+            continue
+        try:
+            cutters[number], doubts = library.hold(cutters[number], name, stickout,
+                                                   "the tool '%s' (T%d)" % (data.tools[number][0], number))
+        except ValueError as error:
+            raise JobError(str(error)) from error
+        texts[number] = library.describe(name, stickout)
+        notes += doubts
+    return texts, notes
+
+
+def to_accepted(data):
+    """swarf.accept.Acceptances of a JobData; JobError for an entry that is none."""
+    accept = importlib.import_module(load().__name__ + ".accept")
+    try:
+        return [accept.make(entry, "the job '%s', acceptance %d" % (data.name, number))
+                for number, entry in enumerate(data.accepted, 1)]
+    except ValueError as error:
+        raise JobError(str(error)) from error
+
+
 def to_program(table):
     """swarf.Program of a MoveTable."""
     return table.play(load().Program())
@@ -80,10 +108,12 @@ def to_job(data):
     stock = dict(data.stock)
     if stock["kind"] == "mesh":
         stock["mesh"] = to_mesh(stock["mesh"])
-    return load().Job(name=data.name, program=to_program(data.moves), tools=to_cutters(data.tools),
+    cutters = to_cutters(data.tools)
+    holders, doubts = hold(cutters, data)
+    return load().Job(name=data.name, program=to_program(data.moves), tools=cutters,
                       tool_names={number: name for number, (name, _) in data.tools.items()}, stock=stock,
-                      design=to_mesh(data.design) if data.design else None, notes=list(data.notes),
-                     teeth=dict(data.teeth))
+                      design=to_mesh(data.design) if data.design else None, notes=list(data.notes) + doubts,
+                     teeth=dict(data.teeth), holders=holders, accepted=to_accepted(data))
 
 
 @dataclass

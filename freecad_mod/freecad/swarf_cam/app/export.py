@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs in freecadcmd for the command line: document -> exchange folder. Arguments come in the environment, because
+"""Runs in freecadcmd for the command line: document, or a CAD file -> exchange folder. Arguments come in the environment, because
 FreeCAD refuses options that it does not know."""
 
 import os
@@ -11,8 +11,12 @@ import FreeCAD
 from ..core import exchange
 from ..core.errors import JobError
 from . import job as jobs
+from . import shapes
 
 INPUT, JOB, FOLDER = "SWARF_EXPORT_INPUT", "SWARF_EXPORT_JOB", "SWARF_EXPORT_FOLDER"
+
+# mm; set: a design is wanted, not a job
+DEFLECTION = "SWARF_EXPORT_DEFLECTION"
 
 
 def main():
@@ -20,8 +24,11 @@ def main():
     folder = os.environ[FOLDER]
     status = 1
     try:
-        document = FreeCAD.openDocument(os.environ[INPUT])
-        exchange.write(folder, jobs.read_job(jobs.pick_job(document, os.environ.get(JOB) or None)))
+        if os.environ.get(DEFLECTION):
+            exchange.write_design(folder, shapes.read_design(os.environ[INPUT], float(os.environ[DEFLECTION])))
+        else:
+            document = FreeCAD.openDocument(os.environ[INPUT])
+            exchange.write(folder, jobs.read_job(jobs.pick_job(document, os.environ.get(JOB) or None)))
         status = 0
     except JobError as error:
         exchange.write_error(folder, str(error))

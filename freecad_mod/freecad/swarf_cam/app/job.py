@@ -5,7 +5,7 @@ from ..core import cutter, program
 from ..core.errors import JobError
 from ..core.job import JobData
 from ..core.placement import Placement
-from . import shapes, tools
+from . import accepted, holders, shapes, tools
 
 MARKS = ("Operations", "Tools", "Stock", "Model")
 
@@ -128,6 +128,9 @@ def read_job(job):
     for number, (name, parts) in described.items():
         if table.feeds_with(number) and not any(kind == cutter.FLUTES for kind, _ in parts):
             raise JobError("the tool '%s' (T%d) has no flutes and cannot cut" % (name, number))
+    held = {int(controller.ToolNumber): holders.holder_of(controller) for controller in controllers}
+    held = {number: entry for number, entry in held.items() if entry}
     teeth = {int(controller.ToolNumber): tools.teeth(controller.Tool) for controller in controllers}
     return JobData(job.Label, table, described, shapes.stock_of(job), shapes.design_of(job), notes,
-                   operations, {number: count for number, count in teeth.items() if count})
+                   operations, {number: count for number, count in teeth.items() if count}, held,
+                   accepted.accepted_of(job))

@@ -3,6 +3,9 @@
 
 import array
 
+import FreeCAD
+import Part
+
 from ..core.errors import JobError
 
 # Greatest distance of triangles from a curved face, mm: a quarter of a usual tolerance of 0.02.
@@ -27,18 +30,43 @@ def as_box(shape):
     return tuple(round(value, 9) for value in lo), tuple(round(value, 9) for value in hi)
 
 
-def as_mesh(found):
+def as_mesh(found, deflection_mm=DEFLECTION_MM):
     """(points, triangles) of shapes, one after the other."""
     points, triangles = array.array("d"), array.array("I")
     for shape in found:
         base = len(points) // 3
-        vertices, facets = shape.tessellate(DEFLECTION_MM)
+        vertices, facets = shape.tessellate(deflection_mm)
         for vertex in vertices:
             points.extend((vertex.x, vertex.y, vertex.z))
         for facet in facets:
             if len(set(facet)) == 3:
                 triangles.extend(base + index for index in facet)
     return points, triangles
+
+
+def read_design(path, deflection_mm):
+    """The solids of a CAD file or a FreeCAD document as one mesh: of a document with one job its model, else every solid
+    that no other object is made from. JobError where there is none."""
+    if not path.lower().endswith(".fcstd"):
+        shape = Part.Shape()
+        shape.read(path)
+        solids = shape.Solids
+    else:
+        solids = _solids_of(FreeCAD.openDocument(path))
+    if not solids:
+        raise JobError("there is no solid in it")
+    return as_mesh(solids, deflection_mm)
+
+
+def _solids_of(document):
+    groups = [obj.Model.Group for obj in document.Objects if hasattr(obj, "Model") and hasattr(obj, "Operations")]
+    if len(groups) == 1:
+        objects = groups[0]
+    else:
+        objects = [obj for obj in document.Objects
+                   if not any(getattr(user, "Shape", None) is not None for user in obj.InList)]
+    shapes = [getattr(obj, "Shape", None) for obj in objects]
+    return [solid for shape in shapes if shape is not None and not shape.isNull() for solid in shape.Solids]
 
 
 def stock_of(job):

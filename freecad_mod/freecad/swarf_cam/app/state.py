@@ -4,6 +4,7 @@
 import hashlib
 
 from ..core.signature import signature
+from . import holders
 from . import job as jobs
 from . import tools
 
@@ -46,6 +47,9 @@ def job_signature(job, voxel_mm):
             if tool is not None:
                 bits[controller.Name] = [tools.shape_type(tool), tools.parameters(tool),
                                          _shape(getattr(tool, "Shape", None))]
+                held = holders.holder_of(controller)
+                if held:
+                    bits[controller.Name].append(held)
         operations.append(entry)
     design = [_shape(getattr(model, "Shape", None)) for model in getattr(job.Model, "Group", None) or []]
     return signature(operations, bits, _shape(getattr(job.Stock, "Shape", None)), design, float(voxel_mm))

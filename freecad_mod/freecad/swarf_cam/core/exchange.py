@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The folder through which FreeCAD's Python hands a job to another one.
 
-    job.json      version, name, operations, sections, tools, stock, notes, teeth; written last
+    job.json      version, name, operations, sections, tools, stock, notes, teeth, holders,
+                  accepted; written last
     moves.bin     the rows of the MoveTable, little-endian doubles
     stock.points, stock.triangles, design.points, design.triangles
                   little-endian doubles (x y z) and 32-bit indices, where there is such a mesh
@@ -62,9 +63,24 @@ def write(folder, job):
         "version": VERSION, "name": job.name, "operations": job.moves.operations, "sections": job.moves.sections,
         "tools": [{"number": number, "name": name, "parts": parts} for number, (name, parts) in job.tools.items()],
         "stock": stock, "design": job.design is not None, "notes": job.notes,
-        "teeth": sorted(job.teeth.items()),
+        "teeth": sorted(job.teeth.items()), "holders": sorted(job.holders.items()), "accepted": job.accepted,
     }
     _write(folder, "job.json", json.dumps(document).encode())
+
+
+def write_design(folder, mesh):
+    """Write a mesh alone: a design."""
+    _write_mesh(folder, "design", mesh)
+    _write(folder, "design.json", json.dumps({"version": VERSION}).encode())
+
+
+def read_design(folder):
+    """The mesh of such a folder. JobError as read()."""
+    if os.path.exists(os.path.join(folder, "error.json")):
+        raise JobError(json.loads(_read(folder, "error.json"))["error"])
+    if not os.path.exists(os.path.join(folder, "design.json")):
+        raise JobError("FreeCAD ended without an answer")
+    return _read_mesh(folder, "design")
 
 
 def write_error(folder, text):
@@ -89,4 +105,6 @@ def read(folder):
              for tool in document["tools"]}
     moves = MoveTable.from_bytes(_read(folder, "moves.bin"), document["sections"], document["operations"])
     design = _read_mesh(folder, "design") if document["design"] else None
-    return JobData(document["name"], moves, tools, stock, design, document["notes"], teeth=dict(document["teeth"]))
+    return JobData(document["name"], moves, tools, stock, design, document["notes"], teeth=dict(document["teeth"]),
+                   holders={number: tuple(entry) for number, entry in document["holders"]},
+                   accepted=document["accepted"])

@@ -14,6 +14,7 @@ class JobData:
     (points, triangles): array('d') of x y z and array('I') of three indices each.
     notes: what the reader left out or assumed, one sentence each. operations: program.Operation of each name in
     moves.operations; empty where the job came through a file. teeth: cutting edges around each tool, where known.
+    holders: number -> (name as swarf.holders takes it, stickout in mm or None). accepted: entries of swarf.accept.
     """
 
     name: str
@@ -24,3 +25,5 @@ class JobData:
     notes: list = field(default_factory=list)
     operations: list = field(default_factory=list)
     teeth: dict = field(default_factory=dict)
+    holders: dict = field(default_factory=dict)
+    accepted: list = field(default_factory=list)

@@ -8,6 +8,14 @@
             <translation>Kante eines Voxels: je feiner, desto genauer und langsamer</translation>
         </message>
         <message>
+            <source>Findings that are accepted, with their reasons</source>
+            <translation>Befunde, die hingenommen werden, mit Begründung</translation>
+        </message>
+        <message>
+            <source>From the tool's tip to the holder's lower face</source>
+            <translation>Von der Werkzeugspitze bis zur Unterseite des Halters</translation>
+        </message>
+        <message>
             <source>Hash of the inputs of the results</source>
             <translation>Prüfsumme der Eingaben der Ergebnisse</translation>
         </message>
@@ -58,6 +66,10 @@
         <message>
             <source>Volume removed by each operation, mm^3</source>
             <translation>Von jeder Operation abgetragenes Volumen, mm^3</translation>
+        </message>
+        <message>
+            <source>What holds the tool, e.g. SK40-ER32</source>
+            <translation>Was das Werkzeug hält, z. B. SK40-ER32</translation>
         </message>
         <message>
             <source>What is left of the stock, an OpenVDB level set</source>

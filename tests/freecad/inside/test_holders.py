@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a document keeps for verification: holders with their stickout, accepted findings; designs in CAD files."""
+
+import os
+import tempfile
+import unittest
+
+import FreeCAD
+import Part
+import samples
+from freecad.swarf_cam import native
+from freecad.swarf_cam.app import accepted, holders, shapes, state
+from freecad.swarf_cam.app import job as jobs
+from freecad.swarf_cam.core.errors import JobError
+
+
+class TestHolders(unittest.TestCase):
+    def setUp(self):
+        self.document = samples.new_document(self)
+        self.document.UndoMode = 1
+        self.job = samples.make_job(self.document)
+        self.document.recompute()
+        self.controller = self.job.Tools.Group[0]
+
+    def assign(self, name, stickout):
+        self.document.openTransaction("holder")
+        holders.assign(self.controller, name, stickout)
+        self.document.commitTransaction()
+
+    def test_assigned_and_undone(self):
+        before = state.job_signature(self.job, 0.5)
+        self.assertIsNone(holders.holder_of(self.controller))
+        self.assign("SK40-ER16", 35.0)
+        self.assertEqual(holders.holder_of(self.controller), ("SK40-ER16", 35.0))
+        self.assertEqual(jobs.read_job(self.job).holders, {1: ("SK40-ER16", 35.0)})
+        self.assertNotEqual(state.job_signature(self.job, 0.5), before)
+        self.document.undo()
+        self.assertIsNone(holders.holder_of(self.controller))
+        self.assertEqual(state.job_signature(self.job, 0.5), before)
+        self.document.redo()
+        self.assertEqual(holders.holder_of(self.controller), ("SK40-ER16", 35.0))
+        self.assign("", 0.0)
+        self.assertIsNone(holders.holder_of(self.controller))
+
+    def test_stickout_is_needed(self):
+        for stickout in (0.0, -1.0):
+            with self.assertRaisesRegex(JobError, "needs its stickout"):
+                holders.assign(self.controller, "ER16", stickout)
+        self.assertIsNone(holders.holder_of(self.controller))
+
+    @unittest.skipUnless(native.is_available(), "the native module is not installed")
+    def test_the_cutter_has_it(self):
+        self.assign("ER16", 35.0)
+        job = native.to_job(jobs.read_job(self.job))
+        self.assertEqual(job.tools[1].extent("holder")[0], 35.0)
+        self.assertEqual(job.holders, {1: "ER16, stickout 35 mm"})
+        self.assign("ER16", 15.0)
+        self.assertTrue(any("would be clamped" in note for note in native.to_job(jobs.read_job(self.job)).notes))
+        self.controller.SwarfStickout = 0.0
+        with self.assertRaisesRegex(JobError, "T1.*needs its stickout"):
+            native.to_job(jobs.read_job(self.job))
+        self.controller.SwarfHolder, self.controller.SwarfStickout = "ER17", 20.0
+        with self.assertRaisesRegex(JobError, "ER17.*not known"):
+            native.to_job(jobs.read_job(self.job))
+
+    def test_kept_in_the_file(self):
+        self.assign("ER16", 35.0)
+        accepted.accept(self.job, {"reason": "sanded", "kind": "excess"})
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "kept.FCStd")
+            self.document.saveAs(path)
+            FreeCAD.closeDocument(self.document.Name)
+            document = FreeCAD.openDocument(path)
+            self.addCleanup(FreeCAD.closeDocument, document.Name)
+            job = jobs.pick_job(document)
+            self.assertEqual(holders.holder_of(job.Tools.Group[0]), ("ER16", 35.0))
+            self.assertEqual(accepted.accepted_of(job), [{"reason": "sanded", "kind": "excess"}])
+
+    def test_accepted_findings(self):
+        self.assertEqual(accepted.accepted_of(self.job), [])
+        self.document.openTransaction("accept")
+        accepted.accept(self.job, {"reason": "sanded", "kind": "excess", "place": [1, 2, 3]})
+        accepted.accept(self.job, {"reason": "moved", "line": 3})
+        self.document.commitTransaction()
+        self.assertEqual([entry["reason"] for entry in jobs.read_job(self.job).accepted], ["sanded", "moved"])
+        if native.is_available():
+            self.assertEqual(native.to_job(jobs.read_job(self.job)).accepted[1].line, 3)
+        self.document.undo()
+        self.assertEqual(accepted.accepted_of(self.job), [])
+        with self.assertRaisesRegex(JobError, "reason"):
+            accepted.accept(self.job, {"kind": "excess"})
+        accepted.keep(self.job, [])
+        self.job.SwarfAccepted = ["{"]
+        with self.assertRaisesRegex(JobError, "acceptance 1"):
+            accepted.accepted_of(self.job)
+
+
+class TestDesigns(unittest.TestCase):
+    def volume(self, mesh):
+        points, triangles = mesh
+        corner = [FreeCAD.Vector(*points[3 * index:3 * index + 3]) for index in triangles]
+        return sum(a.dot(b.cross(c)) for a, b, c in zip(corner[::3], corner[1::3], corner[2::3])) / 6
+
+    def test_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            solid = Part.makeBox(40, 20, 10).cut(Part.makeCylinder(6, 30, FreeCAD.Vector(20, 10, -5)))
+            for suffix, write in ((".step", solid.exportStep), (".brep", solid.exportBrep), (".iges", solid.exportIges)):
+                path = os.path.join(folder, "part" + suffix)
+                write(path)
+                if suffix == ".iges":  # holds faces only
+                    with self.assertRaisesRegex(JobError, "no solid"):
+                        shapes.read_design(path, 0.01)
+                    continue
+                coarse, fine = shapes.read_design(path, 0.5), shapes.read_design(path, 0.002)
+                self.assertLess(len(coarse[1]), len(fine[1]))
+                # chords lie inside the hole, each by at most the deflection
+                self.assertLess(abs(self.volume(fine) - solid.Volume), 0.002 * 2 * 3.1416 * 6 * 10)
+
+    def test_documents(self):
+        document = samples.new_document(self)
+        samples.make_job(document)
+        document.recompute()
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "job.FCStd")
+            document.saveAs(path)
+            self.assertAlmostEqual(self.volume(shapes.read_design(path, 0.01)), 8000 - 480, delta=0.01)
