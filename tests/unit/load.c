@@ -334,6 +334,40 @@ static void check_laws(uint64_t seed)
     CHECK_OK(swarf_threads_set(0));
 }
 
+static int stop_late(void *user, double fraction)
+{
+    *(double *)user = fraction;
+    return fraction > 0.3;
+}
+
+/* A cancel comes through, and leaves whole moves cut: what is played again cuts nothing more. */
+static void check_cancel(void)
+{
+    job j = begin("flat:d=6,l=20", 0.5, -10, 5, -3);
+    for (int i = 0; i < 20; i++) {
+        go(&j, i % 2 ? -10 : 70, 5 + i, -3);
+        go(&j, i % 2 ? -10 : 70, 6 + i, -3);
+    }
+    const swarf_tool tool = {.number = 1, .cutter = j.cutter};
+    swarf_check_options options = swarf_check_options_default();
+    double reached = 0, whole = 0, part = 0, again = 0;
+    const swarf_progress progress = {stop_late, &reached};
+    swarf_simulation *simulation = NULL;
+    options.loads = 1;
+    CHECK_OK(swarf_stock_volume(j.stock, &whole));
+    CHECK_FAILS(swarf_stock_check(j.stock, j.program, 0, 40, &tool, 1, &options, &progress, &j.check),
+                SWARF_ERROR_CANCELLED, NULL);
+    CHECK(reached > 0.3 && reached < 0.6 && j.check == NULL);
+    CHECK_OK(swarf_stock_volume(j.stock, &part));
+    CHECK(part < whole - 100);
+    CHECK_OK(swarf_stock_simulate(j.stock, j.program, 0, 10, &tool, 1, NULL, NULL, &simulation));
+    swarf_simulation_destroy(simulation);
+    CHECK_OK(swarf_stock_volume(j.stock, &again));
+    CHECK_NEAR(again, part, 1e-6 * whole);
+    j.moves = 0;
+    end(&j);
+}
+
 /* Cutting while measuring leaves the same stock as simulating. */
 static void check_same_stock(void)
 {
@@ -376,6 +410,7 @@ int main(void)
     }
     check_ball(0.1, 0.3);
     check_same_stock();
+    check_cancel();
     for (uint64_t seed = 1; seed <= 4; seed++) check_laws(seed);
     return test_end();
 }

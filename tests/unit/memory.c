@@ -159,6 +159,7 @@ struct things {
     swarf_cutter *cutter;
     swarf_stock *stock, *walked;
     swarf_history *history;
+    swarf_check *check;
     swarf_simulation *simulation;
     swarf_mesh *mesh, *welded;
     double volume;
@@ -192,6 +193,21 @@ static swarf_status make_stock(struct things *t)
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = 0.5;
     return swarf_stock_create_box(&box, &options, &t->stock);
+}
+
+/* With loads, on a stock of its own: what failed half way is not asked again. */
+static swarf_status check_loads(struct things *t)
+{
+    const swarf_tool tool = {.number = 1, .teeth = 2, .cutter = t->cutter};
+    swarf_check_options options = swarf_check_options_default();
+    swarf_stock *stock = NULL;
+    options.loads = 1;
+    swarf_status status = swarf_stock_copy(t->stock, &stock);
+    if (status == SWARF_OK)
+        status = swarf_stock_check(stock, t->program, 0, swarf_program_move_count(t->program), &tool, 1, &options, NULL,
+                                   &t->check);
+    swarf_stock_destroy(stock);
+    return status;
 }
 
 static swarf_status simulate(struct things *t)
@@ -250,6 +266,7 @@ static const struct step {
     {"read the language", read_language},
     {"make the cutter", make_cutter},
     {"make the stock", make_stock},
+    {"check loads", check_loads},
     {"simulate", simulate},
     {"measure", measure},
     {"make a history", make_history},
@@ -265,6 +282,7 @@ static void release(struct things *t)
     swarf_simulation_destroy(t->simulation);
     swarf_history_destroy(t->history);
     swarf_stock_destroy(t->walked);
+    swarf_check_destroy(t->check);
     swarf_stock_destroy(t->stock);
     swarf_cutter_release(t->cutter);
     swarf_program_release(t->program);
