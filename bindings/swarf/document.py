@@ -36,6 +36,7 @@ th { text-align: left; font-weight: 600; color: var(--dim); } th, td { padding: 
   border-bottom: 1px solid var(--rule); } td.n, th.n { text-align: right; white-space: nowrap; }
 .facts { display: grid; grid-template-columns: repeat(4, 1fr); gap: .8rem 1.5rem; margin-top: 1.2rem; }
 .facts div { border-top: 2px solid var(--ink); padding-top: .25rem; } .facts b { display: block; font-size: 1.15rem; }
+.place { white-space: nowrap; padding-right: .6rem; }
 .pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 1rem; } .places { grid-template-columns: repeat(3, 1fr); }
 figure { margin: 0; break-inside: avoid; } figure img { width: 100%; display: block; border: 1px solid var(--rule); }
 figcaption { font-size: .85rem; color: var(--dim); margin-top: .2rem; } svg { display: block; width: 100%; height: auto; }
@@ -140,7 +141,7 @@ def finding_row(number: int, finding: Verdict) -> list[str]:
     severity = finding.severity if finding.accepted is None else "note"
     word = finding.severity if finding.accepted is None else f"({finding.severity})"
     return [str(number), Markup(f'<span class="{severity}">{word}</span>'), finding.operation or "",
-            str(finding.line or ""), place, Markup(text)]
+            str(finding.line or ""), Markup(f'<span class="place">{place}</span>'), Markup(text)]
 
 
 def operations(report: dict[str, Any]) -> str:

@@ -50,7 +50,7 @@ class Verification:
     deviation: Deviation
     tolerance: tuple[float, float]
     allowance: float
-    findings: list[Verdict] = field(default_factory=list)
+    findings: list[Verdict] = field(default_factory=list)  #: errors, warnings, notes, at last what is accepted
     complete: bool = False  #: whether material that no move went to counts as an error
     loads: Optional[dict[str, memoryview]] = None  #: Check.loads, None: not asked for
     limits: Limits = field(default_factory=dict)
@@ -156,6 +156,8 @@ def verify(
     for idle in accepting.apply([*job.accepted, *accept], made.findings):
         made.findings.append(Verdict("note", f"nothing is found any more of what is accepted because {idle.reason!r}",
                                      "acceptance", idle.operation, idle.line or 0, place=idle.place))
+    order = ("error", "warning", "note")
+    made.findings.sort(key=lambda found: (found.accepted is not None, order.index(found.severity)))
     return made
 
 

@@ -102,8 +102,7 @@ def run(arguments: argparse.Namespace) -> int:
             else:
                 report.write(made, path)
     inputs.print_notes(job)
-    inputs.print_findings([finding_line(finding) for finding in
-                           sorted(done.findings, key=lambda finding: finding.accepted is not None)])
+    inputs.print_findings([finding_line(finding) for finding in done.findings])
     print(f"{arguments.input}: {'passed' if done.passed else 'FAILED'}, tolerance +{done.tolerance[0]:g} "
           f"-{done.tolerance[1]:g} mm, voxel {done.result.stock.voxel:g} mm")
     return DONE if done.passed else FINDINGS

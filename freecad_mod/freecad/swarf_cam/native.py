@@ -113,7 +113,7 @@ def to_job(data):
     return load().Job(name=data.name, program=to_program(data.moves), tools=cutters,
                       tool_names={number: name for number, (name, _) in data.tools.items()}, stock=stock,
                       design=to_mesh(data.design) if data.design else None, notes=list(data.notes) + doubts,
-                     teeth=dict(data.teeth), holders=holders, accepted=to_accepted(data))
+                      teeth=dict(data.teeth), holders=holders, accepted=to_accepted(data))
 
 
 @dataclass
