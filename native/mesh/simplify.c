@@ -11,10 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Edge of the cubes in voxels, pass by pass. The first are small, to stay in cache while there are many facets. */
+/* Edge of the cubes in voxels, pass by pass. The first are small, to stay in cache while there are many facets; the
+ * last is one for all, for vertices whose facets have grown over every border before. Few are left to look at by then.
+ */
 static const struct pass {
     double edge, shift;
-} passes[] = {{32, 0}, {32, 0.5}, {96, 0.25}, {256, 0.4}};
+} passes[] = {{32, 0}, {32, 0.5}, {96, 0.25}, {256, 0.4}, {1e9, 0}};
 enum { PASSES = sizeof passes / sizeof *passes };
 /* Cubes that a table is made for; more are made larger. */
 static const double most_cubes = 1 << 22;
