@@ -130,7 +130,7 @@ int main(int count, char **argument)
     bench.program = bench_job_program(bench.job);
     bench.moves = swarf_program_move_count(bench.program);
     bench.paths = malloc((bench.moves + 1) * sizeof *bench.paths);
-    if (!bench.paths || bench.moves <= STEPS) return 2;
+    if (!bench.paths) return 2;
     bench.options = swarf_stock_options_default();
     bench.options.voxel_mm = bench_job_voxel(bench.job, atoi(argument[2]));
     make_tools(&bench);
