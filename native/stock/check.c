@@ -64,6 +64,8 @@ struct player {
     size_t first, count;
     swarf_path *paths;
     size_t path_room;
+    swarf_path *near; /* those of them that may touch */
+    size_t near_room;
     size_t *numbers; /* of the moves whose paths these are */
     size_t number_room;
     int32_t operation, tool; /* of the batch */
@@ -375,6 +377,18 @@ static swarf_status cut(struct player *p, const swarf_check_tool *tool, size_t f
     return swarf_loads_cut(p->result->loads, p->stock, &batch, p->numbers, count, p->progress, from, to);
 }
 
+/* How deep the first `count` paths go, as swarf_cut_touch() tells; those that are clear by their boxes are left out. */
+static swarf_status touch_near(struct player *p, const struct test *test, size_t count, double *depth, double point[3])
+{
+    size_t used = 0;
+    SWARF_TRY(swarf_array_reserve((void **)&p->near, &p->near_room, count, sizeof *p->near));
+    for (size_t i = 0; i < count; i++) {
+        const swarf_box tips = paths_box(&p->paths[i], 1);
+        if (!is_clear(test, &tips)) p->near[used++] = p->paths[i];
+    }
+    return swarf_cut_touch(test->target, test->body, p->near, used, test->depth, depth, point);
+}
+
 /* Moves first .. end - 1, of which only these tests may answer yes. */
 static swarf_status play_range(struct player *p, const swarf_check_tool *tool, size_t first, size_t end,
                                const struct test *tests, size_t test_count)
@@ -394,8 +408,7 @@ static swarf_status play_range(struct player *p, const swarf_check_tool *tool, s
             taken = tests[i].feeds;
             tips = paths_box(p->paths, count);
         }
-        if (count && !is_clear(&tests[i], &tips))
-            status = swarf_cut_touch(tests[i].target, tests[i].body, p->paths, count, tests[i].depth, &depth, point);
+        if (count && !is_clear(&tests[i], &tips)) status = touch_near(p, &tests[i], count, &depth, point);
         if (depth > tests[i].depth) open[open_count++] = tests[i];
     }
     if (status == SWARF_OK && open_count && end - first > 1) {
@@ -523,6 +536,7 @@ swarf_status swarf_stock_check(swarf_stock *stock, const swarf_program *program,
     for (size_t i = 0; i < MOST_TARGETS; i++) swarf_stock_destroy(p.targets[i]);
     free(p.prepared);
     free(p.paths);
+    free(p.near);
     free(p.numbers);
     swarf_stock_leave(stock);
     if (status != SWARF_OK) {
