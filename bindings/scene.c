@@ -70,7 +70,51 @@ static PyObject *picture_write(PyObject *self, PyObject *path_object)
     return result;
 }
 
+static PyObject *picture_show_deviation(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"design", "tolerance", "allowance", "progress", NULL};
+    module_state *state = state_of(self);
+    picture_object *picture = (picture_object *)self;
+    PyObject *design, *progress = NULL;
+    double tolerance, allowance = 0;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!d|$dO:show_deviation", names, state->solid, &design, &tolerance,
+                                     &allowance, &progress))
+        return NULL;
+    if (!picture->bytes[RGBA] || !picture->bytes[POSITION] || !picture->bytes[SEEN]) {
+        PyErr_SetString(PyExc_ValueError, "picture: made without 'rgba', 'position' and 'seen'");
+        return NULL;
+    }
+    const size_t count = (size_t)picture->width * (size_t)picture->height;
+    PyObject *values = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(count * sizeof(double)));
+    /* A copy, for views of the picture as it was may live. */
+    PyObject *rgba = PyBytes_FromStringAndSize(PyBytes_AsString(picture->bytes[RGBA]), (Py_ssize_t)(4 * count));
+    PyObject *result = NULL;
+    native_call call;
+    if (values && rgba && !call_begin(&call, progress)) {
+        double *value = (double *)(void *)PyBytes_AsString(values);
+        swarf_status status = swarf_deviation_pixels(
+            ((solid_object *)design)->handle, (const double *)(const void *)PyBytes_AsString(picture->bytes[POSITION]),
+            (const uint8_t *)PyBytes_AsString(picture->bytes[SEEN]), count, allowance, &call.progress, value);
+        if (!status) status = swarf_deviation_colours(value, count, tolerance, (uint8_t *)PyBytes_AsString(rgba));
+        if (!call_end(&call, state, status))
+            result = buffer_view(state, values, value, "d", sizeof *value, (size_t)picture->height,
+                                 (size_t)picture->width, NULL);
+    }
+    if (result) {
+        Py_DECREF(picture->bytes[RGBA]);
+        picture->bytes[RGBA] = Py_NewRef(rgba);
+    }
+    Py_XDECREF(rgba);
+    Py_XDECREF(values);
+    return result;
+}
+
 static PyMethodDef picture_methods[] = {
+    {"show_deviation", WITH_KEYWORDS(picture_show_deviation), METH_VARARGS | METH_KEYWORDS,
+     "show_deviation($self, design, tolerance, *, allowance=0.0, progress=None)\n--\n\n"
+     "Tint what shows the stock by its deviation from a design Solid, as deviation_colours() does -> the deviations\n"
+     "(mm, less what is meant to be left), a read-only (height, width) float64 view, NaN elsewhere. Needs the buffers\n"
+     "rgba, position and seen; ValueError without them. rgba is a new view, which write() writes."},
     {"write", picture_write, METH_O, "write($self, path, /)\n--\n\nWrite the colours as PNG. OSError."},
     {NULL, NULL, 0, NULL},
 };

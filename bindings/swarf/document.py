@@ -63,24 +63,11 @@ def png(width: int, height: int, rgba: bytes) -> bytes:
 def deviation_map(done: Verification, scene: Scene, camera: Camera, size: tuple[int, int]) -> bytes:
     """PNG of the stock from a camera, its surface in the colours of its deviation."""
     width, height = size
-    picture = scene.render(camera, width, height, samples=2, buffers=("rgba", "position"), colour=(0.8, 0.8, 0.8),
-                           background=(1.0, 1.0, 1.0, 1.0), background_top=(1.0, 1.0, 1.0, 1.0))
-    places = picture.position.cast("B").cast("d")
-    seen = [pixel for pixel in range(width * height) if not math.isnan(places[3 * pixel])]
-    points = memoryview(b"".join(picture.position.cast("B")[24 * pixel:24 * pixel + 24] for pixel in seen))
-    values = [math.nan] * (width * height)
-    if seen:
-        distance = done.design.distance(points.cast("d", (len(seen), 3)))
-        for pixel, value in zip(seen, distance):
-            values[pixel] = value - done.allowance
-    flat = bytearray(picture.rgba.cast("B"))
-    kept = memoryview(struct.pack(f"{len(seen)}d", *(values[pixel] for pixel in seen)))
-    if seen:
-        tinted = deviation_colours(kept.cast("B").cast("d", (len(seen), 1)),
-                                   b"".join(bytes(flat[4 * pixel:4 * pixel + 4]) for pixel in seen), max(done.tolerance))
-        for index, pixel in enumerate(seen):
-            flat[4 * pixel:4 * pixel + 3] = tinted[4 * index:4 * index + 3]
-    return png(width, height, bytes(flat))
+    picture = scene.render(camera, width, height, samples=2, buffers=("rgba", "position", "seen"),
+                           colour=(0.8, 0.8, 0.8), background=(1.0, 1.0, 1.0, 1.0),
+                           background_top=(1.0, 1.0, 1.0, 1.0))
+    picture.show_deviation(done.design, max(done.tolerance), allowance=done.allowance)
+    return png(width, height, bytes(picture.rgba))
 
 
 def image(data: bytes, alternative: str) -> str:

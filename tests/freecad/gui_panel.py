@@ -449,7 +449,7 @@ class Check:
         view = panel.view
         x, y, _ = view.camera.project((60, 25, -8), view.aspect())
         point, hit = view.point_under((x + 1) / 2 * view.width(), (1 - y) / 2 * view.height())
-        assert hit and abs(point[1] - 25) < 0.05, point
+        assert hit and abs(point[1] - 25) < view.camera.height / view.height(), point  # a pixel
         screenshot("panel-section.png")
         row.slider.setValue(0)
         self.redrawn()
@@ -470,6 +470,81 @@ class Check:
         assert row.isHidden()
         self.redrawn()
         assert differing(whole, self.image()) == 0, "closed again it is as before"
+
+    def deviation(self):
+        """Colours, legend, value under the mouse, pins, another tolerance."""
+        panel, view = self.panel, self.panel.view
+        panel.seek(panel.transport.end)
+        key(view, QtCore.Qt.Key_2, "2")
+        pump(0.5)
+        self.settle()
+        assert panel.tools.tolerance.isHidden()
+        panel.tools.set_colouring("deviation")
+        self.redrawn()
+        assert panel.tools.tolerance.isVisible()
+
+        def pixel(point):
+            x, y, _ = view.camera.project(point, view.aspect())
+            return (x + 1) / 2 * view.width(), (1 - y) / 2 * view.height()
+
+        def colour(point):
+            image, (x, y) = view.image(), pixel(point)
+            return image.pixelColor(int(x * image.width() / view.width()), int(y * image.height() / view.height()))
+
+        # the wave is missing, the pocket not deep enough, the top right
+        floor, top, wave = (30, 28, -5), (70, 20, -1), (54, 25, -3)
+        expected = {floor: 0.2, top: 0.0, wave: -2.0}
+        for point, value in expected.items():
+            assert abs(view.value_under(*pixel(point)) - value) < 0.01, (point, view.value_under(*pixel(point)))
+        red, green, blue = colour(floor), colour(top), colour(wave)
+        assert red.red() > 2 * red.blue() and blue.blue() > 2 * blue.red() and green.green() > green.red(), \
+            (red.getRgb(), green.getRgb(), blue.getRgb())
+        mouse(view, "move", *pixel(floor))
+        assert abs(view.hover - 0.2) < 0.01
+        panel.tabs.setCurrentWidget(panel.findings)
+        assert len(view.pins) == len(panel.checking.found) == 3
+        numbered = [panel.findings.tree.topLevelItem(row).text(0)[0] for row in range(3)]
+        assert sorted(numbered) == ["①", "②", "③"]
+        screenshot("panel-deviation.png")
+        path = os.path.join(OUT, "deviation.png")
+        panel.files.save_picture(path)
+        wait_for(lambda: not panel.banner.working, "writing the picture")
+        saved = QtGui.QImage(path).convertToFormat(view.image().format())
+        assert differing(saved, view.image()) < 0.01, "the file has the colours too"
+        panel.banner.done()
+        panel.picking.found = None
+        click(view, *pixel(floor))
+        wait_for(lambda: panel.picking.found is not None, "the answer to a click")
+        assert panel.findChild(QtWidgets.QLabel, "SwarfPoint-deviation").text() == "+0.200 mm"
+        panel.tools.tolerance.setValue(0.3)
+        self.redrawn()
+        wide = colour(floor)
+        assert wide.green() >= wide.red(), "with a wider tolerance the pocket is well"
+        wait_for(lambda: panel.checking.running, "checks with another tolerance")
+        wait_for(lambda: not panel.checking.running, "the end of the checks")
+        assert not [item for item in panel.checking.found if abs(abs(item.amount) - 0.2) < 0.01]
+        application = QtWidgets.QApplication.instance()
+        style = application.styleSheet()
+        application.setStyleSheet("QWidget { background-color: #35393e; color: #f0f0f0 }")
+        key(view, QtCore.Qt.Key_0, "0")
+        pump(0.5)
+        drag(view, QtCore.Qt.LeftButton, (120, 150), (180, 170))
+        screenshot("panel-deviation-moving.png")
+        self.settle()
+        mouse(view, "move", *pixel(wave))
+        screenshot("panel-deviation-dark.png")
+        mouse(view, "move", 3, 3)
+        assert view.hover is None, "there is no deviation beside the part"
+        application.setStyleSheet(style)
+        panel.tools.open(False)
+        assert panel.tools.colouring == "material" and view.legend is None, "without a model"
+        panel.tools.open(True)
+        panel.tools.tolerance.setValue(self.settings.TOLERANCE_MM)
+        wait_for(lambda: panel.checking.running, "checks with the first tolerance")
+        wait_for(lambda: not panel.checking.running, "the end of the checks")
+        self.settle()
+        key(view, QtCore.Qt.Key_0, "0")
+        pump(0.5)
 
     def accuracy(self):
         """Estimate, another voxel size, one that cannot be, cancelling."""
@@ -587,7 +662,8 @@ def check():
     Gui.SendMsgToActiveView("ViewFit")
     for step, arguments in ((check.preferences, ()), (check.opening, (document, job)), (check.transporting, ()), (check.steering, ()),
                             (check.looking, (document, job)),
-                            (check.clicking, (document,)), (check.findings, ()), (check.section, ()), (check.accuracy, ()), (check.outputs, (document,)),
+                            (check.clicking, (document,)), (check.findings, ()), (check.section, ()), (check.deviation, ()),
+                            (check.accuracy, ()), (check.outputs, (document,)),
                             (check.bad_moments, (document, job)), (check.closing, ())):
         print("CHECK", step.__name__)
         sys.stdout.flush()

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 from swarf_cam import native
-from swarf_cam.core import findings, navigation, program
+from swarf_cam.core import findings, legend, navigation, program
 from swarf_cam.core.clock import Clock
 from swarf_cam.core.findings import Finding
 from swarf_cam.core.job import JobData
@@ -96,7 +96,7 @@ def test_checks_can_be_broken_off(swarf):
 def test_order_marks_and_counts():
     listing = SimpleNamespace(begin=[0, 5, 9], line_of=lambda move: move // 5, operation_at=lambda move: 0)
     verdicts = [SimpleNamespace(severity=severity, text=severity, kind=kind, move=move, t=0.5, place=point,
-                                amount=amount)
+                                amount=amount, accepted=None)
                 for severity, kind, move, point, amount in (
                     ("note", "design", -1, None, None), ("warning", "not reached", 2, (1, 1, 1), 4.0),
                     ("error", "rapid", 7, (1, 2, 3), 0.2), ("error", "gouge", 3, (0, 0, 0), -0.5))]
@@ -106,6 +106,8 @@ def test_order_marks_and_counts():
     assert [mark[:2] for mark in findings.marks(found)] == [(4.0, "error"), (7.5, "error"), (9.0, "warning")]
     assert findings.counts(found) == {"error": 2, "warning": 1, "note": 1}
     assert [item.kind for item in findings.worst_places(found, 5)] == ["not reached", "gouge"]
+    verdicts[2].accepted = "the old clamp"
+    assert findings.counts(findings.from_verdicts(verdicts, listing)) == {"error": 1, "warning": 1, "note": 2}
     together = [Finding("error", "a", place=1.0), Finding("note", "b", place=1.0)]
     assert [mark[1] for mark in findings.marks(together)] == ["note", "error"], "the worst is drawn last"
     overview = findings.from_overview([(3.0, "warning", "w"), (7.0, "error", "e")], listing)
@@ -122,3 +124,35 @@ def test_approach_brings_a_place_to_the_middle(swarf, perspective):
     assert navigation.shown_height(camera, point) == pytest.approx(10.0)
     navigation.approach(camera, point, 4 / 3, 20.0)  # nearer already: stays
     assert navigation.shown_height(camera, point) == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize("tolerance", (0.001, 0.05, 2.0))
+def test_the_legend_spans_four_tolerances(tolerance):
+    for share in (0.0, 0.25, 0.5, 0.9, 1.0):
+        assert legend.share_of(legend.value_at(share, tolerance), tolerance) == pytest.approx(share)
+    assert legend.value_at(1.0, tolerance) == pytest.approx(4 * tolerance)
+    assert legend.share_of(99 * tolerance, tolerance) == 1.0 and legend.share_of(-99 * tolerance, tolerance) == 0.0
+    marks = legend.ticks(tolerance)
+    assert [share for share, _ in marks] == sorted((share for share, _ in marks), reverse=True)
+    assert all(float(text) == pytest.approx(legend.value_at(share, tolerance)) for share, text in marks)
+
+
+def test_a_tinted_frame_holds_the_deviations(swarf):
+    from swarf_cam import session as sessions
+
+    data, listing = make(box_mesh(LO, (40.0, 20.0, -0.3)))
+    watched = sessions.Session(data, 0.5, lambda done: False)
+    camera = swarf.Camera.view("top", watched.box, 4 / 3)
+    view = sessions.View(camera, 200, 150, tolerance_mm=0.1, show_cutter=False)
+    sharp, moving = watched.draw(view, 0.0, None), watched.draw(view, 0.0, 1e-3)
+    assert (sharp.width, sharp.height) == (200, 150) and moving.width < 200, "fewer rays while things move"
+    for frame in (sharp, moving):
+        middle = frame.values[frame.height // 2, frame.width // 2]
+        assert middle == pytest.approx(0.3, abs=0.01) and math.isnan(frame.values[0, 0])
+    assert watched.draw(sessions.View(camera, 200, 150), 0.0, None).values is None
+    assert watched.pick(view, 0.0, 0.0, 0).deviation == pytest.approx(0.3, abs=0.01)
+    # the slot's floor, 2 mm deep
+    while watched.step(len(data.moves), 1.0) != len(data.moves):
+        pass
+    x, y, _ = camera.project((20, 5, -2), 4 / 3)
+    assert watched.pick(view, x, y, len(data.moves)).deviation == pytest.approx(-1.7, abs=0.02)

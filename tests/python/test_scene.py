@@ -160,3 +160,53 @@ def test_the_exact_surface_knows_its_moves():
         program.add_line((0, 0, 0))
     with pytest.raises(ValueError):
         scene.set_moves(3)
+
+
+def block(lo, hi):
+    """A Mesh of a box."""
+    corners = [(x, y, z) for x in (lo[0], hi[0]) for y in (lo[1], hi[1]) for z in (lo[2], hi[2])]
+    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    return swarf.Mesh(corners, [half for a, b, c, d in quads for half in ((a, b, c), (a, c, d))])
+
+
+def test_deviation_is_shown_where_the_stock_is_seen(stock):
+    design = swarf.Solid(block((0, 0, -10), (60, 40, -0.3)))
+    camera = swarf.Camera.view("top", stock.bounding_box(), 1.5)
+    cutter = swarf.Cutter("flat:d=6,l=20")
+    picture = swarf.Scene(stock).render(camera, 150, 100, samples=1, buffers=("rgba", "position", "seen"),
+                                        cutter=(cutter, (30, 20, 5)))
+    before = picture.rgba
+    plain = bytes(before)
+    values = picture.show_deviation(design, 0.1)
+    assert values.shape == (100, 150) and values.readonly
+    kinds = set()
+    for row in range(100):
+        for column in range(150):
+            kind, value = picture.seen[row, column], values[row, column]
+            kinds.add(kind)
+            assert value == pytest.approx(0.3, abs=0.01) if kind == 1 else math.isnan(value)
+    assert kinds >= {0, 1, 3}
+    assert bytes(before) == plain, "a view of the picture as it was stays"
+    at = 4 * (50 * 150 + 20)
+    told = swarf.deviation_colours([[values[50, 20]]], plain[at:at + 4], 0.1)
+    assert bytes(picture.rgba)[at:at + 4] == told != plain[at:at + 4]
+    flutes = 4 * (50 * 150 + 75)
+    assert bytes(picture.rgba)[flutes:flutes + 4] == plain[flutes:flutes + 4], "the cutter keeps its colours"
+    less = picture.show_deviation(design, 0.1, allowance=0.25)
+    assert less[50, 20] == pytest.approx(values[50, 20] - 0.25, abs=1e-12)
+
+
+def test_deviation_needs_its_buffers_and_a_tolerance(stock, tmp_path):
+    design = swarf.Solid(block((0, 0, -10), (60, 40, -0.3)))
+    camera = camera_of(stock)
+    scene = swarf.Scene(stock)
+    with pytest.raises(ValueError, match="position"):
+        scene.render(camera, 30, 20).show_deviation(design, 0.1)
+    picture = scene.render(camera, 30, 20, buffers=("rgba", "position", "seen"))
+    plain = bytes(picture.rgba)
+    with pytest.raises(ValueError, match="tolerance"):
+        picture.show_deviation(design, 0.0)
+    assert bytes(picture.rgba) == plain, "what fails changes nothing"
+    picture.show_deviation(design, 0.1)
+    picture.write(tmp_path / "deviation.png")
+    assert (tmp_path / "deviation.png").stat().st_size > 100

@@ -316,6 +316,34 @@ static void check_place(void)
     shape_free(&small);
 }
 
+/* Each pixel is as far from the design as the point it shows; those that show something else have no value. */
+static void check_pixels(void)
+{
+    swarf_solid *design = design_of(4, 8);
+    const double position[] = {3, 3, 0.25, 30, 20, -4.5, 57, 37, -0.125, 1, 2, 3, NAN, NAN, NAN};
+    const uint8_t seen[] = {SWARF_SEEN_STOCK, SWARF_SEEN_STOCK, SWARF_SEEN_STOCK, SWARF_SEEN_FLUTES,
+                            SWARF_SEEN_NOTHING};
+    const double expected[] = {0.25, -0.5, -0.125, NAN, NAN};
+    enum { COUNT = sizeof seen };
+    double value[COUNT];
+    for (double allowance = 0; allowance < 0.5; allowance += 0.3) {
+        CHECK_OK(swarf_deviation_pixels(design, position, seen, COUNT, allowance, NULL, value));
+        for (size_t i = 0; i < COUNT; i++)
+            CHECK(isnan(expected[i]) ? isnan(value[i]) : fabs(value[i] - expected[i] + allowance) < 1e-12);
+    }
+    CHECK_OK(swarf_deviation_pixels(design, position, seen + 3, 2, 0, NULL, value));
+    CHECK(isnan(value[0]) && isnan(value[1]));
+    CHECK_OK(swarf_deviation_pixels(design, NULL, NULL, 0, 0, NULL, NULL));
+    value[0] = 7;
+    CHECK_FAILS(swarf_deviation_pixels(design, position, seen, COUNT, NAN, NULL, value), SWARF_ERROR_ARGUMENT,
+                "allowance");
+    CHECK_FAILS(swarf_deviation_pixels(NULL, position, seen, COUNT, 0, NULL, value), SWARF_ERROR_ARGUMENT, "missing");
+    CHECK_FAILS(swarf_deviation_pixels(design, NULL, seen, COUNT, 0, NULL, value), SWARF_ERROR_ARGUMENT, "missing");
+    CHECK_FAILS(swarf_deviation_pixels(design, position + 12, seen, 1, 0, NULL, value), SWARF_ERROR_ARGUMENT, "finite");
+    CHECK(value[0] == 7);
+    swarf_solid_release(design);
+}
+
 int main(void)
 {
     check_nothing_wrong();
@@ -324,5 +352,6 @@ int main(void)
     check_missing_pocket();
     check_scallops();
     check_place();
+    check_pixels();
     return test_end();
 }

@@ -8,7 +8,7 @@ import inspect
 import math
 import os
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from . import native
@@ -30,6 +30,9 @@ COARSE_MAX = 4
 # The box that tells which move made a point: its half edge and its voxels, in voxels of the stock.
 PROBE_REACH, PROBE_VOXEL = 0.35, 0.1
 
+# Stock in the colours of its deviation: as light as the colours of the legend want it, linear.
+TINTED_MATERIAL = (0.8, 0.8, 0.8)
+
 # Making the stock takes about this part of opening; the rest is cutting it once.
 OPEN_SHARE = 0.3
 
@@ -45,12 +48,14 @@ class View:
     look: tuple = ()
     show_cutter: bool = True
     show_path: bool = False
+    tolerance_mm: float = 0.0  # > 0: the colours of the deviation from the design
 
 
 @dataclass
 class Frame:
     """A picture, read only. rgba: bytes, rows from the top. depth: rows of mm along the view, inf for nothing.
-    place: where the stock stood. sharp: whether it is as good as it gets."""
+    place: where the stock stood. sharp: whether it is as good as it gets. values: rows of deviations in mm, NaN for
+    nothing; None when they are not shown."""
 
     width: int
     height: int
@@ -59,6 +64,7 @@ class Frame:
     camera: Any
     place: float
     sharp: bool
+    values: Any = None
 
 
 @dataclass
@@ -73,6 +79,7 @@ class Picked:
     tool: int = -1
     depth_below_top: float = 0.0
     slope_deg: float = 0.0
+    deviation: Any = None  # mm, where there is a design
 
 
 @dataclass
@@ -114,7 +121,8 @@ class Session:
         self.stops = {STOP_OPERATION: [float(begin) for begin in self.listing.operation_begin[1:]],
                       STOP_TOOL_CHANGE: self.tool_changes,
                       STOP_FINDING: sorted({place for place, _, _ in self.overview.findings})}
-        self._coarse = 1
+        self._coarse = {False: 1, True: COARSE_MAX}  # of pictures with deviations, which cost most
+        self._design, self._design_is_bad = None, False
         self._scene = swarf.Scene(stock)
         self._exact = hasattr(swarf.Scene, "set_surface")  # the native module can show more than the voxels
         if self._exact:
@@ -156,29 +164,53 @@ class Session:
         look.update(program=self.program, moves_done=float(place), path=view.show_path)
         return {key: value for key, value in look.items() if key in self._keywords}
 
+    def _solid(self, progress=None):
+        """The design as a swarf.Solid, None when there is none or it encloses nothing; the checks tell of that."""
+        if self._design is None and self.job.design is not None and not self._design_is_bad:
+            try:
+                self._design = self._swarf.Solid(self.job.design, progress=progress)
+            except self._swarf.GeometryError:
+                self._design_is_bad = True
+        return self._design
+
+    def _picture(self, view, place, progress, **how):
+        """(picture, values): values as in Frame."""
+        look = dict(self._look(view, place), **how)
+        design = self._solid(progress) if view.tolerance_mm > 0 else None
+        if design is None:
+            return self._current_scene().render(view.camera, view.width, view.height, buffers=("rgba", "depth"),
+                                                progress=progress, **look), None
+        look["colour"] = TINTED_MATERIAL
+        picture = self._current_scene().render(view.camera, view.width, view.height, progress=progress,
+                                               buffers=("rgba", "depth", "position", "seen"), **look)
+        return picture, picture.show_deviation(design, view.tolerance_mm, progress=progress)
+
     def draw(self, view, place, budget_ms, progress=None):
         """A Frame; budget_ms None: as good as it gets."""
-        look = self._look(view, place)
-        if budget_ms is None:
-            look["samples"] = SAMPLES
-        else:
-            look.update(samples=1, coarse=self._coarse)
+        tinted = view.tolerance_mm > 0
+        coarse, how = 1 if budget_ms is None else self._coarse[tinted], {"samples": SAMPLES}
+        if budget_ms is not None:
+            how = {"samples": 1}
             # coarse rays make steps of the edges' lines
-            off = {"occlusion", "shadow"} | ({"edges"} if self._coarse > 1 else set())
-            if look.get("colouring") == "material":  # the other colours are those of the moves, which only it knows
+            off = {"occlusion", "shadow"} | ({"edges"} if coarse > 1 else set())
+            if dict(view.look).get("colouring") == "material":  # the others are those of the moves, which it alone knows
                 off.add("exact")
-            look.update((name, False) for name in off if name in self._keywords)
+            how.update((name, False) for name in off if name in self._keywords)
+            if tinted:  # a value for each ray, not for each pixel
+                view = replace(view, width=max(view.width // coarse, 1), height=max(view.height // coarse, 1))
+            else:
+                how["coarse"] = coarse
         started = time.monotonic()
-        picture = self._current_scene().render(view.camera, view.width, view.height, buffers=("rgba", "depth"),
-                                               progress=progress, **look)
+        picture, values = self._picture(view, place, progress, **how)
         if budget_ms is not None:
             took = 1000 * (time.monotonic() - started)
             if took > 1.5 * budget_ms:
-                self._coarse = min(self._coarse + 1, COARSE_MAX)
+                coarse = min(coarse + 1, COARSE_MAX)
             elif took < 0.5 * budget_ms:
-                self._coarse = max(self._coarse - 1, 1)
+                coarse = max(coarse - 1, 1)
+            self._coarse[tinted] = coarse
         return Frame(view.width, view.height, bytes(picture.rgba), picture.depth, view.camera, place,
-                     budget_ms is None)
+                     budget_ms is None, values)
 
     def tool_at(self, place):
         """Number of the tool in the spindle at a place, -1 for none."""
@@ -197,6 +229,9 @@ class Session:
         move = found.move if found.move >= 0 else self._maker(found.point, int(place))
         result = Picked(found.point, found.normal, depth_below_top=self.box[1][2] - found.point[2],
                         slope_deg=math.degrees(math.acos(min(max(found.normal[2], -1.0), 1.0))))
+        design = self._solid()
+        if design is not None:
+            result.deviation = design.distance([found.point])[0]
         if move >= 0:
             tool, operation = self.data.moves.sections[int(self.data.moves.row(move)[2])][:2]
             result.move, result.line = move, self.listing.line_of(move)
@@ -217,8 +252,7 @@ class Session:
 
     def write_png(self, path, view, place, progress=None):
         """The picture as good as it gets, to a file."""
-        look = dict(self._look(view, place), samples=SAMPLES)
-        self._current_scene().render(view.camera, view.width, view.height, progress=progress, **look).write(path)
+        self._picture(view, place, progress, samples=SAMPLES)[0].write(path)
 
     def write_frames(self, folder, view, places, progress=None, on_frame=None):
         """The stock at each of some places as frame-00000.png ... -> number of files. Goes back to where it was."""

@@ -104,6 +104,13 @@ SWARF_API swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, co
  *  well. `size` bytes at most. */
 SWARF_API swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, char *text, size_t size);
 
+/** Deviations (mm, positive: material left, less an allowance) of the `count` pixels of a picture that see the stock,
+ * NAN for the others. `position` has 3 doubles and `seen` a swarf_seen per pixel, as swarf_picture_buffers has them.
+ * Any thread, all cores. SWARF_ERROR_ARGUMENT: NULL, an allowance that is not finite. */
+SWARF_API swarf_status swarf_deviation_pixels(const swarf_solid *design, const double *position, const uint8_t *seen,
+                                              size_t count, double allowance, const swarf_progress *progress,
+                                              double *value);
+
 /** Tint `count` shaded pixels (RGBA, 8 bits, sRGB) by their deviations: green within +-tolerance, by yellow to red for
  *  material left and by cyan to blue for material missing at +-4 tolerances and beyond; NAN leaves a pixel as it is.
  *  SWARF_ERROR_ARGUMENT: NULL, a tolerance that is not positive. */

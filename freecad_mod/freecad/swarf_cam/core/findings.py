@@ -42,7 +42,7 @@ def from_overview(found, listing):
 
 def from_verdicts(verdicts, listing):
     """Findings of swarf.verify()'s Verdicts: contacts where the tool stands at them, gouges when they are made, what
-    is left at the end."""
+    is left at the end. What was accepted is a note, with its reason."""
     result = []
     for verdict in verdicts:
         place = None
@@ -50,7 +50,10 @@ def from_verdicts(verdicts, listing):
             place = float(listing.begin[-1])
         elif verdict.move >= 0:
             place = verdict.move + (1.0 if verdict.kind == MADE_BY_MOVE else verdict.t)
-        result.append(Finding(verdict.severity, verdict.text, verdict.kind, place, point=verdict.place,
+        severity, text = verdict.severity, verdict.text
+        if verdict.accepted is not None:
+            severity, text = "note", "%s (%s)" % (text, verdict.accepted)
+        result.append(Finding(severity, text, verdict.kind, place, point=verdict.place,
                               amount=verdict.amount or 0.0, **_of_move(verdict.move, listing)))
     return sorted(result, key=_order)
 

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Colours of operations, findings and the picture's background, in light and dark themes."""
 
+import array
+
 from .qt import QtGui
 
 # Told apart by most colour-blind people when neighbours in this order (after Okabe and Ito), on light and dark.
 OPERATIONS = ("#3d8fd1", "#e69f00", "#2aa876", "#cc6fa6", "#d55e00", "#7b7fd4", "#a3a129", "#50b7c9")
 FINDINGS = {"error": "#e5484d", "warning": "#e69f00", "note": "#3d8fd1"}
+
+# What deviations are tinted on in the legend: about as light as a face towards the viewer.
+DEVIATION_LIT = (225, 225, 225, 255)
 
 # Bare aluminium, linear.
 MATERIAL = (0.50, 0.53, 0.56)
@@ -17,6 +22,12 @@ BACKGROUND_DARK = ((0.085, 0.095, 0.11), (0.20, 0.22, 0.25))
 def of_operation(index):
     """QColor of an operation."""
     return QtGui.QColor(OPERATIONS[index % len(OPERATIONS)])
+
+
+def of_deviations(swarf, values, tolerance):
+    """RGBA bytes of some deviations, as the stock shows them where it is lit."""
+    table = memoryview(array.array("d", values)).cast("B").cast("d", (len(values), 1))
+    return swarf.deviation_colours(table, bytes(DEVIATION_LIT) * len(values), tolerance)
 
 
 def is_dark(palette):

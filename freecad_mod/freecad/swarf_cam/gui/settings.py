@@ -11,7 +11,7 @@ RESOLUTION = 400
 SPEED = 50.0
 
 # Deviation from the design that is well, mm.
-TOLERANCE_MM = 0.05
+TOLERANCE_MM, TOLERANCE_MIN_MM, TOLERANCE_MAX_MM = 0.05, 0.001, 10.0
 
 BOOLEANS = {"AutoPlay": True, "AutoCheck": True, "ShowCutter": True, "ShowPath": False, "Perspective": False,
             "Occlusion": True, "Shadow": False}

@@ -215,6 +215,14 @@
             <translation>Ecken abdunkeln, wenn die Ansicht ruht</translation>
         </message>
         <message>
+            <source>Deviation</source>
+            <translation>Abweichung</translation>
+        </message>
+        <message>
+            <source>Deviation from the model that is well</source>
+            <translation>Erlaubte Abweichung vom Modell</translation>
+        </message>
+        <message>
             <source>Drawing ...</source>
             <translation>Wird gezeichnet ...</translation>
         </message>
@@ -557,6 +565,10 @@
         <message>
             <source>the simulation has no job: it was deleted, or never chosen</source>
             <translation>die Simulation hat keinen Auftrag: er wurde gelöscht oder nie gewählt</translation>
+        </message>
+        <message>
+            <source>{0:+.3f} mm</source>
+            <translation>{0:+.3f} mm</translation>
         </message>
         <message>
             <source>{0:.0f} voxels along the longest edge, up to {1:.0f} MB</source>

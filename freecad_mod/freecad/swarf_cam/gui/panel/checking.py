@@ -7,11 +7,18 @@ import FreeCAD
 from ... import checks
 from ...core import findings as model
 from ...core.transport import STOP_FINDING
-from .. import settings
-from ..qt import QtGui
+from .. import colours, settings
+from ..qt import QtCore, QtGui
 from ..worker import Worker
 
 translate = FreeCAD.Qt.translate
+
+
+# Milliseconds without another tolerance before it is checked with the new one.
+QUIET_MS = 700
+
+# Worst places that are shown as pins.
+PINS = 8
 
 
 class Checking:
@@ -24,6 +31,10 @@ class Checking:
         self.found = []
         panel.findings.chosen.connect(self._go_to)
         panel.findings.run_pressed.connect(self._pressed)
+        self._later = QtCore.QTimer(panel)
+        self._later.setSingleShot(True)
+        self._later.setInterval(QUIET_MS)
+        self._later.timeout.connect(self.start)
 
     @property
     def running(self):
@@ -37,12 +48,19 @@ class Checking:
         if settings.flag("AutoCheck"):
             self.start()
 
+    def start_soon(self):
+        """Check again, when the last call of this was a while ago."""
+        if self.found or self.running or settings.flag("AutoCheck"):
+            self._later.start()
+
     def close_job(self):
         """Nothing is watched any more."""
+        self._later.stop()
         self.cancel()
         self._old += [self._worker] if self._worker is not None else []
         self._worker, self.found = None, []
-        self._panel.findings.show_findings((), None)
+        self._panel.findings.show_findings((), {}, None)
+        self._panel.view.pins = []
         self._panel.findings.show_checked("")
         self._show_title()
 
@@ -99,7 +117,11 @@ class Checking:
     def _show(self, found):
         panel, self.found = self._panel, found
         marks = model.marks(found)
-        panel.findings.show_findings(found, panel.session.listing)
+        worst = {finding: number for number, finding in enumerate(model.worst_places(found, PINS), 1)}
+        panel.findings.show_findings(found, worst, panel.session.listing)
+        panel.view.pins = [(finding.point, str(number), colours.FINDINGS[finding.severity])
+                           for finding, number in worst.items()]
+        panel.view.update()
         panel.timeline.set_findings(marks)
         panel.transport.stops = dict(panel.session.stops, **{STOP_FINDING: sorted({place for place, _, _ in marks})})
         self._show_title()

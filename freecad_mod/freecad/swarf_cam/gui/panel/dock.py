@@ -128,6 +128,8 @@ class LivePanel(QtWidgets.QDockWidget):
                     "section": self._set_section}
         self.tools.switched.connect(lambda name, on: switches[name](on))
         self.tools.coloured.connect(self._wish)
+        self.tools.toleranced.connect(self._wish)
+        self.tools.toleranced.connect(self.checking.start_soon)
         self.section.changed.connect(self._wish)
         self.view.camera_changed.connect(self._wish)
         self.view.clicked.connect(self.picking.pick)
@@ -282,6 +284,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.program.open(session.listing)
         self.checking.open(session)
         self.accuracy.measured(session, time.monotonic() - self._opened_at)
+        self.tools.open(session.job.design is not None)
         self.section.open(session.box)
         self.view.open(session.box)
         place, self._resume = self._resume, None
@@ -352,15 +355,16 @@ class LivePanel(QtWidgets.QDockWidget):
         bottom, top = colours.background(self.palette())
         return (("background", bottom), ("background_top", top), ("occlusion", settings.flag("Occlusion")),
                 ("shadow", settings.flag("Shadow")), ("edges", True),
-                ("colouring", self.tools.colouring), ("colour", colours.MATERIAL), ("sections", self.section.planes()))
+                ("colouring", "material" if self.tools.tolerance_mm else self.tools.colouring), ("colour", colours.MATERIAL), ("sections", self.section.planes()))
 
     def current_view(self, size=None):
         """session.View of what is shown, or of another size (width, height) of the picture."""
         width, height = size or self.view.pixels()
         return sessions.View(self.view.camera.copy(), width, height, self._look(), settings.flag("ShowCutter"),
-                             settings.flag("ShowPath"))
+                             settings.flag("ShowPath"), self.tools.tolerance_mm)
 
     def _wish(self):
+        self.view.set_legend(self.tools.tolerance_mm)
         if self._engine is not None and self.session is not None and self.view.camera is not None:
             self._engine.wish(self.transport.wanted, self.current_view())
 

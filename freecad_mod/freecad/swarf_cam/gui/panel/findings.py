@@ -15,6 +15,9 @@ FILTERS = {"error": QT_TRANSLATE_NOOP("Swarf", "Show errors"), "warning": QT_TRA
 NAMES = {"error": QT_TRANSLATE_NOOP("Swarf", "Error"), "warning": QT_TRANSLATE_NOOP("Swarf", "Warning"),
          "note": QT_TRANSLATE_NOOP("Swarf", "Note")}
 
+# Numbers of pins.
+CIRCLED = "①②③④⑤⑥⑦⑧⑨"
+
 
 class FindingList(QtWidgets.QWidget):
     """Tells by chosen the core Finding that was clicked, by run_pressed that it is to be checked (again) or, while it
@@ -71,21 +74,22 @@ class FindingList(QtWidgets.QWidget):
         self.tree.itemClicked.connect(lambda item, _: self.chosen.emit(self._shown[self.tree.indexOfTopLevelItem(item)]))
         column.addWidget(self.tree, 1)
         self._shown = []
-        self.show_findings((), None)
+        self.show_findings((), {}, None)
         self.show_checked("")
 
     def icon(self, severity):
         """The sign of a severity."""
         return self._icons[severity]
 
-    def show_findings(self, findings, listing):
-        """A list of core Findings of a program's core Listing."""
+    def show_findings(self, findings, numbers, listing):
+        """A list of core Findings of a program's core Listing. numbers: Finding -> number of its pin."""
         self._shown = list(findings)
         self.tree.clear()
         for finding in self._shown:
             operation = listing.operations[finding.operation].name if finding.operation >= 0 else "–"
             line = str(abs(listing.number[finding.line])) if finding.line >= 0 else "–"
-            item = QtWidgets.QTreeWidgetItem([finding.text, operation, line])
+            number = "%s " % CIRCLED[numbers[finding] - 1] if finding in numbers else ""
+            item = QtWidgets.QTreeWidgetItem([number + finding.text, operation, line])
             item.setIcon(0, self._icons[finding.severity])
             item.setToolTip(0, "%s: %s" % (translate("Swarf", NAMES[finding.severity]), finding.text))
             self.tree.addTopLevelItem(item)

@@ -23,7 +23,8 @@ class Inspector(QtWidgets.QWidget):
         for key, text in (("operation", translate("Swarf", "Operation")), ("line", translate("Swarf", "Line")),
                           ("tool", translate("Swarf", "Tool")), ("time", translate("Swarf", "Cut at")),
                           ("point", translate("Swarf", "Point")), ("depth", translate("Swarf", "Below the top")),
-                          ("slope", translate("Swarf", "Slope"))):
+                          ("slope", translate("Swarf", "Slope")),
+                          ("deviation", translate("Swarf", "Deviation"))):
             label = QtWidgets.QLabel("–")
             label.setObjectName("SwarfPoint-" + key)
             label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)

@@ -5,7 +5,7 @@ import math
 
 import FreeCAD
 
-from ...core import viewcube
+from ...core import legend, viewcube
 from .. import colours
 from ..qt import QtCore, QtGui
 
@@ -13,6 +13,13 @@ translate = FreeCAD.Qt.translate
 
 # Half edge of the cube and its middle's distance from the corner, pixels.
 CUBE, CUBE_MARGIN = 24.0, 58.0
+
+# Pins: length of the stem and radius of the head, pixels; a place is hidden when the part is nearer than it by this
+# share of the stock's diagonal.
+PIN_STEM, PIN_HEAD, HIDDEN_SHARE = 24.0, 9.0, 0.01
+
+# The legend of deviations, pixels, and rows of colours in it.
+LEGEND_WIDTH, LEGEND_HEIGHT, LEGEND_ROWS = 14.0, 170.0, 160
 
 FACE_TEXTS = {
     "front": FreeCAD.Qt.QT_TRANSLATE_NOOP("Swarf", "FRONT"), "rear": FreeCAD.Qt.QT_TRANSLATE_NOOP("Swarf", "REAR"),
@@ -40,6 +47,9 @@ def paint(view, painter):
     dark = colours.is_dark(view.palette())
     if view.camera is not None:
         _paint_cube(view, painter)
+        if view.legend is not None:
+            _paint_pins(view, painter)
+            view.legend.paint(view, painter, dark)
         _paint_mark(view, painter)
     _paint_caption(view, painter, dark)
 
@@ -88,13 +98,98 @@ def _paint_cube(view, painter):
         painter.restore()
 
 
-def _paint_mark(view, painter):
-    if view.mark is None:
-        return
-    x, y, _ = view.camera.project(view.mark, view.aspect())
+def _seen_at(view, point):
+    """(QPointF, depth) where a point of the part appears, None outside the picture."""
+    x, y, depth = view.camera.project(point, view.aspect())
     if not (math.isfinite(x) and abs(x) <= 1.2 and abs(y) <= 1.2):
+        return None
+    return QtCore.QPointF((x + 1) / 2 * view.width(), (1 - y) / 2 * view.height()), depth
+
+
+def _paint_pins(view, painter):
+    """Numbers on stems, the worst last; pale where the part hides the place."""
+    font = QtGui.QFont(view.font())
+    font.setPixelSize(11)
+    font.setBold(True)
+    painter.setFont(font)
+    slack = HIDDEN_SHARE * math.dist(*view.box)
+    for point, text, colour in reversed(view.pins):
+        seen = _seen_at(view, point)
+        if seen is None:
+            continue
+        place, depth = seen
+        painter.setOpacity(0.35 if view.depth_under(place.x(), place.y()) < depth - slack else 1.0)
+        head = QtCore.QPointF(place.x(), place.y() - PIN_STEM)
+        painter.setPen(QtGui.QPen(QtGui.QColor("#ffffff"), 4.0))
+        painter.drawLine(QtCore.QLineF(place, head))
+        painter.setPen(QtGui.QPen(QtGui.QColor(colour), 2.0))
+        painter.drawLine(QtCore.QLineF(place, head))
+        painter.setPen(QtGui.QPen(QtGui.QColor("#ffffff"), 1.5))
+        painter.setBrush(QtGui.QColor(colour))
+        painter.drawEllipse(head, PIN_HEAD, PIN_HEAD)
+        painter.drawText(QtCore.QRectF(head.x() - PIN_HEAD, head.y() - PIN_HEAD, 2 * PIN_HEAD, 2 * PIN_HEAD),
+                         QtCore.Qt.AlignCenter, text)
+    painter.setOpacity(1.0)
+
+
+class Legend:
+    """The scale of deviations at the right border, with a hand for what is under the mouse."""
+
+    def __init__(self, swarf, tolerance_mm):
+        self.tolerance_mm = tolerance_mm
+        values = [legend.value_at(1 - (row + 0.5) / LEGEND_ROWS, tolerance_mm) for row in range(LEGEND_ROWS)]
+        self._bytes = colours.of_deviations(swarf, values, tolerance_mm)
+        self._strip = QtGui.QImage(self._bytes, 1, LEGEND_ROWS, 4, QtGui.QImage.Format_RGBA8888)  # the bytes stay
+
+    def paint(self, view, painter, dark):
+        """Below the cube, as high as there is room for."""
+        height = min(LEGEND_HEIGHT, view.height() - 2 * CUBE_MARGIN - 40)
+        if height < LEGEND_HEIGHT / 3:
+            return
+        font = QtGui.QFont(view.font())
+        font.setPixelSize(11)
+        metrics = QtGui.QFontMetricsF(font)
+        ticks = legend.ticks(self.tolerance_mm)
+        room = max(metrics.boundingRect(text).width() for _, text in ticks) + 4
+        left, top = view.width() - LEGEND_WIDTH - room - 20, 2 * CUBE_MARGIN + 22
+        bar = QtCore.QRectF(left, top, LEGEND_WIDTH, height)
+        ink = QtGui.QColor("#f2f4f5") if dark else QtGui.QColor("#1d2329")
+        painter.setPen(QtCore.Qt.NoPen)
+        painter.setBrush(QtGui.QColor(20, 24, 28, 190) if dark else QtGui.QColor(255, 255, 255, 205))
+        painter.drawRoundedRect(bar.adjusted(-8, -20, room + 10, 10), 5, 5)
+        painter.setRenderHint(QtGui.QPainter.SmoothPixmapTransform, False)
+        painter.drawImage(bar, self._strip)
+        painter.setFont(font)
+        painter.setPen(ink)
+        painter.drawText(QtCore.QRectF(left - 8, top - 19, LEGEND_WIDTH + room + 18, 16), QtCore.Qt.AlignCenter, "mm")
+        for share, text in ticks:
+            y = top + (1 - share) * height
+            painter.drawLine(QtCore.QLineF(bar.right(), y, bar.right() + 3, y))
+            painter.drawText(QtCore.QRectF(bar.right() + 6, y - 8, room + 4, 16), QtCore.Qt.AlignVCenter, text)
+        if view.hover is not None:
+            self._paint_hand(view, painter, bar, ink, dark)
+
+    def _paint_hand(self, view, painter, bar, ink, dark):
+        """The value under the mouse, left of the bar."""
+        y = bar.top() + (1 - legend.share_of(view.hover, self.tolerance_mm)) * bar.height()
+        text = legend.text_of(view.hover)
+        width = QtGui.QFontMetricsF(painter.font()).boundingRect(text).width() + 12
+        plate = QtCore.QRectF(bar.left() - width - 16, y - 9, width, 18)
+        painter.setPen(QtCore.Qt.NoPen)
+        painter.setBrush(QtGui.QColor(20, 24, 28, 230) if dark else QtGui.QColor(255, 255, 255, 235))
+        painter.drawRoundedRect(plate, 4, 4)
+        painter.setBrush(ink)
+        painter.drawPolygon(QtGui.QPolygonF([QtCore.QPointF(bar.left(), y), QtCore.QPointF(bar.left() - 8, y - 5),
+                                             QtCore.QPointF(bar.left() - 8, y + 5)]))
+        painter.setPen(ink)
+        painter.drawText(plate, QtCore.Qt.AlignCenter, text)
+
+
+def _paint_mark(view, painter):
+    seen = _seen_at(view, view.mark) if view.mark is not None else None
+    if seen is None:
         return
-    point = QtCore.QPointF((x + 1) / 2 * view.width(), (1 - y) / 2 * view.height())
+    point = seen[0]
     for colour, width in (("#ffffff", 4.0), ("#e5484d", 2.0)):
         painter.setPen(QtGui.QPen(QtGui.QColor(colour), width))
         painter.setBrush(QtCore.Qt.NoBrush)

@@ -55,6 +55,8 @@ class Picking:
         values = {"point": "X %.3f  Y %.3f  Z %.3f" % found.point,
                   "depth": translate("Swarf", "{0:.3f} mm").format(found.depth_below_top),
                   "slope": "%.1f°" % found.slope_deg, "hint": ""}
+        if found.deviation is not None:
+            values["deviation"] = translate("Swarf", "{0:+.3f} mm").format(found.deviation)
         if found.move < 0:
             values["hint"] = translate("Swarf", "The stock as it was: nothing was cut here yet.")
         else:

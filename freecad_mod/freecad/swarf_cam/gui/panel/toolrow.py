@@ -12,7 +12,9 @@ QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 # Scene.render's names and what they are called here.
 COLOURINGS = (("material", QT_TRANSLATE_NOOP("Swarf", "Material")),
               ("operation", QT_TRANSLATE_NOOP("Swarf", "By operation")), ("tool", QT_TRANSLATE_NOOP("Swarf", "By tool")),
-              ("age", QT_TRANSLATE_NOOP("Swarf", "By age")), ("feed", QT_TRANSLATE_NOOP("Swarf", "By feed")))
+              ("age", QT_TRANSLATE_NOOP("Swarf", "By age")), ("feed", QT_TRANSLATE_NOOP("Swarf", "By feed")),
+              ("deviation", QT_TRANSLATE_NOOP("Swarf", "Deviation")))
+DEVIATION = "deviation"
 
 # Name of icon and tool, what it says, and the keyword that Scene.render must know.
 VIEWS = (("fit", QT_TRANSLATE_NOOP("Swarf", "Show the whole stock (F)"), None),
@@ -37,11 +39,13 @@ ON_THE_JOB = ("reload", "keep")
 
 class ToolRow(QtWidgets.QToolBar):
     """Tells the name of what was pressed, and of what was switched on or off; coloured when another colouring was
-    chosen. keywords: those of Scene.render; by_move: whether a scene knows which move made what."""
+    chosen, toleranced another tolerance, which is kept in the settings. keywords: those of Scene.render; by_move:
+    whether a scene knows which move made what."""
 
     pressed = QtCore.Signal(str)
     switched = QtCore.Signal(str, bool)
     coloured = QtCore.Signal()
+    toleranced = QtCore.Signal()
 
     def __init__(self, keywords, by_move, parent=None):
         super().__init__(parent)
@@ -54,9 +58,22 @@ class ToolRow(QtWidgets.QToolBar):
         self._colouring.setToolTip(translate("Swarf", "What the colours of the stock show"))
         for name, text in COLOURINGS:
             self._colouring.addItem(translate("Swarf", text), name)
-        self._colouring.currentIndexChanged.connect(lambda *_: self.coloured.emit())
+        self._colouring.currentIndexChanged.connect(self._set_colouring)
         if by_move:
             self.addWidget(self._colouring)
+        self.tolerance = QtWidgets.QDoubleSpinBox()
+        self.tolerance.setObjectName("SwarfTolerance")
+        self.tolerance.setToolTip(translate("Swarf", "Deviation from the model that is well"))
+        self.tolerance.setDecimals(3)
+        self.tolerance.setRange(settings.TOLERANCE_MIN_MM, settings.TOLERANCE_MAX_MM)
+        self.tolerance.setSingleStep(0.01)
+        self.tolerance.setPrefix("± ")
+        self.tolerance.setSuffix(" mm")
+        self.tolerance.setKeyboardTracking(False)
+        self.tolerance.setValue(settings.tolerance())
+        self.tolerance.valueChanged.connect(self._set_tolerance)
+        self._tolerance_shown = self.addWidget(self.tolerance)
+        self._tolerance_shown.setVisible(False)
         spring = QtWidgets.QWidget()
         spring.setSizePolicy(QtWidgets.QSizePolicy.Expanding, QtWidgets.QSizePolicy.Preferred)
         self.addWidget(spring)
@@ -95,6 +112,26 @@ class ToolRow(QtWidgets.QToolBar):
     def colouring(self):
         """Scene.render's name of the colouring that is chosen."""
         return self._colouring.currentData()
+
+    @property
+    def tolerance_mm(self):
+        """Tolerance of the colouring by deviation, 0.0 while there is another one."""
+        return settings.tolerance() if self.colouring == DEVIATION else 0.0
+
+    def open(self, has_design):
+        """A job: without a design there is no deviation to show."""
+        index = self._colouring.findData(DEVIATION)
+        self._colouring.model().item(index).setEnabled(has_design)
+        if not has_design and self._colouring.currentIndex() == index:
+            self._colouring.setCurrentIndex(0)
+
+    def _set_colouring(self, *_):
+        self._tolerance_shown.setVisible(self.colouring == DEVIATION)
+        self.coloured.emit()
+
+    def _set_tolerance(self, value):
+        settings.set_tolerance(value)
+        self.toleranced.emit()
 
     def set_colouring(self, name):
         """Choose a colouring."""

@@ -55,6 +55,9 @@ class PictureView(QtWidgets.QWidget):
         self.frame = None
         self.mark = None  # point that was clicked
         self.caption = ("", "", None)
+        self.pins = []  # (point, text, colour) of places; shown with the legend
+        self.legend = None  # core Legend of the deviations that are shown
+        self.hover = None  # mm, deviation under the mouse
         self._image = None
         self._pressed = self._last = None
         self._dragging = False
@@ -96,6 +99,24 @@ class PictureView(QtWidgets.QWidget):
                                    QtGui.QImage.Format_RGBA8888)  # frame keeps the bytes alive
         self.update()
 
+    def set_legend(self, tolerance_mm):
+        """Of a picture in the colours of the deviation; 0: it has others."""
+        if tolerance_mm != (self.legend.tolerance_mm if self.legend is not None else 0.0):
+            self.legend = overlay.Legend(self._swarf, tolerance_mm) if tolerance_mm > 0 else None
+            self.update()
+
+    def _set_hover(self, value):
+        if value != self.hover:
+            self.hover = value
+            self.update()
+
+    def value_under(self, x, y):
+        """Deviation (mm) of what is seen at a pixel, None where there is none."""
+        if self.frame is None or self.frame.values is None:
+            return None
+        value = self.frame.values[self._pixel(x, y)]
+        return None if math.isnan(value) else value
+
     def image(self):
         """What is shown, without the marks: a QImage of its own, or None."""
         return self._image.copy() if self._image is not None else None
@@ -105,15 +126,21 @@ class PictureView(QtWidgets.QWidget):
     def _place(self, x, y):
         return 2 * x / max(self.width(), 1) - 1, 1 - 2 * y / max(self.height(), 1)
 
+    def _pixel(self, x, y):
+        """(row, column) of the frame."""
+        px, py = self._place(x, y)
+        column = min(max(int((px + 1) / 2 * self.frame.width), 0), self.frame.width - 1)
+        return min(max(int((1 - py) / 2 * self.frame.height), 0), self.frame.height - 1), column
+
     def point_under(self, x, y):
         """The point seen at a pixel; as deep as the middle of the part where nothing is."""
         px, py = self._place(x, y)
-        depth = math.inf
-        if self.frame is not None and self.frame.depth is not None:
-            column = min(max(int((px + 1) / 2 * self.frame.width), 0), self.frame.width - 1)
-            row = min(max(int((1 - py) / 2 * self.frame.height), 0), self.frame.height - 1)
-            depth = self.frame.depth[row, column]
+        depth = self.depth_under(x, y)
         return navigation.point_at(self.camera, px, py, self.aspect(), depth), math.isfinite(depth)
+
+    def depth_under(self, x, y):
+        """mm along the view to what is seen at a pixel, inf for nothing."""
+        return math.inf if self.frame is None or self.frame.depth is None else self.frame.depth[self._pixel(x, y)]
 
     # Steering
 
@@ -204,6 +231,7 @@ class PictureView(QtWidgets.QWidget):
         """Steer as the navigation style says."""
         x, y = place_of(event)
         buttons, keys = self._held(event)
+        self._set_hover(None if buttons else self.value_under(x, y))
         if self.camera is None or not buttons or self._pressed in (None, "cube"):
             self.setCursor(QtCore.Qt.PointingHandCursor if self.camera is not None and
                            overlay.cube_place(self, x, y) is not None else QtCore.Qt.ArrowCursor)
@@ -219,6 +247,11 @@ class PictureView(QtWidgets.QWidget):
             self.setCursor(QtCore.Qt.ClosedHandCursor if what == navigation.PAN else QtCore.Qt.SizeAllCursor)
             navigation.drag(self.camera, what, dx, dy, self.aspect(), self._pivot, turntable)
             self._changed()
+
+    def leaveEvent(self, event):
+        """Nothing is under the mouse any more."""
+        super().leaveEvent(event)
+        self._set_hover(None)
 
     def mouseReleaseEvent(self, event):
         """The end of a drag, or a click."""
