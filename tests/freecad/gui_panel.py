@@ -300,6 +300,8 @@ class Check:
         panel.setGeometry(10, 10, 1180, 720)
         self.settle()
         assert panel.splitter.orientation() == QtCore.Qt.Horizontal
+        bar = panel.tabs.tabBar()
+        assert bar.tabRect(bar.count() - 1).right() <= panel.tabs.width(), "a tab is hidden"
         screenshot("panel-wide.png")
         panel.tools.actions_by_name["path"].setChecked(False)
         application = QtWidgets.QApplication.instance()

@@ -46,8 +46,8 @@ QUIT_SECONDS = 10.0
 # Pixels for the picture and the lists at first.
 SIZES = (900, 150)
 
-# From this width on the lists lie beside the picture, below it else.
-WIDE, WIDE_LISTS = 900, 340
+# From this width on the lists lie beside the picture, below it else; wide enough that no tab is hidden.
+WIDE, WIDE_LISTS = 1000, 460
 
 
 class LivePanel(QtWidgets.QDockWidget):
