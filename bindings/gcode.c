@@ -102,9 +102,12 @@ static int reading_diameters(reading *r, PyObject *diameters)
     r->diameters = calloc((size_t)count + 1, sizeof *r->diameters);
     int failed = r->diameters == NULL;
     if (failed) PyErr_NoMemory();
-    for (Py_ssize_t i = 0; i < count && !failed; i++)
-        failed = !PyArg_ParseTuple(PyList_GetItem(items, i), "id;diameters: a number and its diameter",
-                                   &r->diameters[i].number, &r->diameters[i].mm);
+    for (Py_ssize_t i = 0; i < count && !failed; i++) {
+        PyObject *item = PySequence_Tuple(PyList_GetItem(items, i));
+        failed = !item || !PyArg_ParseTuple(item, "id;diameters: a number and its diameter", &r->diameters[i].number,
+                                            &r->diameters[i].mm);
+        Py_XDECREF(item);
+    }
     Py_DECREF(items);
     r->options.diameters = r->diameters;
     r->options.diameter_count = (size_t)count;

@@ -96,6 +96,8 @@ static PyObject *mesh_from_stock(PyObject *type, PyObject *args, PyObject *keywo
         return PyErr_Format(PyExc_TypeError, "surface: needs a Surface or None");
     const surface_object *surface = given == Py_None ? NULL : (const surface_object *)given;
     size_t from, count = 0;
+    if (!surface && moves != Py_None)
+        return PyErr_Format(PyExc_ValueError, "moves: they are those of a surface, which was not given");
     if (surface && program_range(surface->program, 0, moves, &from, &count)) return NULL;
     if (budget < 0) return PyErr_Format(PyExc_ValueError, "budget: %zd is not a number of triangles", budget);
     native_call call;

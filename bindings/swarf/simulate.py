@@ -155,10 +155,10 @@ def simulate(
     scene = None
     if picture is not None:  # before the cut: the exact surface begins with the stock as it was
         scene = Scene(stock)
-        scene.set_surface(stock, job.program, job.tools)
+        timed("stock", lambda report: scene.set_surface(stock, job.program, job.tools, progress=report))
     exact = None
     if mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs):
-        exact = Surface(stock, job.program, job.tools)
+        exact = timed("stock", lambda report: Surface(stock, job.program, job.tools, progress=report))
     simulation = timed("cut", lambda report: stock.simulate(job.program, job.tools, batch=batch, progress=report))
     result = Result(job, stock, simulation, seconds=seconds)
     if compare and job.design is not None:

@@ -127,8 +127,10 @@ static swarf_status take_parts(swarf_surface *surface)
     size_t room = 0;
     for (size_t i = 0; i < moves; i++) {
         swarf_path path;
+        double from[6], to[6]; /* turned axes cut nothing, here as in a simulation */
         SWARF_TRY(swarf_program_path(surface->program, i, &path));
-        if (!path.has_motion || !body_of(surface, i)) continue;
+        if (!path.has_motion || !body_of(surface, i) || swarf_program_move_axes(surface->program, i, from, to))
+            continue;
         const uint32_t parts = swarf_trace_parts(&path);
         SWARF_TRY(
             swarf_array_reserve((void **)&surface->parts, &room, surface->part_count + parts, sizeof *surface->parts));

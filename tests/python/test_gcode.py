@@ -222,6 +222,12 @@ def test_the_tools_given_serve_compensation(tmp_path, capsys):
     # the control's own table comes first, where it tells
     assert ends(swarf.read_gcode(path, tools=[(1, 6.0, 0.0)], diameters={1: 8.0})) == ends(table)
     assert ends(swarf.read_gcode(path, tools=[(1, 0.0, 0.0)], diameters={1: 6.0})) == ends(table)
+    class Pairs(dict):
+        def items(self):
+            return [7]
+
+    with pytest.raises(TypeError):
+        swarf.read_gcode(path, diameters=Pairs({1: 6.0}))
     for wrong in ({1: -1.0}, {-1: 1.0}, {1: math.nan}):
         with pytest.raises(ValueError, match="diameter 1: tool"):
             swarf.read_gcode(path, diameters=wrong)

@@ -237,5 +237,7 @@ def test_exact_surface():
         swarf.Mesh.from_stock(stock, surface=stock)
     with pytest.raises(ValueError):
         swarf.Mesh.from_stock(stock, surface=surface, moves=2)
+    with pytest.raises(ValueError, match="surface"):
+        swarf.Mesh.from_stock(stock, moves=1)
     del surface
     program.add_line((0, 0, 0))

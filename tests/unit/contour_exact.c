@@ -199,6 +199,8 @@ static void measure_edges(const swarf_triangles *t, edges *e, figures *out)
     out->edge_bad = out->edge_count ? (double)bad / out->edge_count : 0;
 }
 
+static int edges_seen; /* vertices at edges that were measured, in all */
+
 static figures measure(const part *truth, const swarf_mesh *mesh, edges *e, test_random *random)
 {
     figures out = {0};
@@ -322,6 +324,7 @@ static void check_part(int index, motion m, test_random *random)
         /* where two edges pass one cell its vertex can only be on one; the roots of the thread are two all along */
         if (index != THREAD_MILL) CHECK(f.edge_bad * f.edge_count <= 2 + 0.02 * f.edge_count);
         if (v.edge_count > 0) CHECK(v.edge_bad > 0.5);
+        edges_seen += f.edge_count;
     }
     swarf_mesh_release(mesh);
     swarf_mesh_release(uniform);
@@ -408,5 +411,6 @@ int main(void)
     test_random random = test_random_begin(41);
     for (int index = 0; index < CASE_CUTTERS; index++)
         for (int m = 0; m < MOTIONS; m++) check_part(index, (motion)m, &random);
+    CHECK(edges_seen > 2000); /* else nothing was shown of edges */
     return test_end();
 }

@@ -222,7 +222,6 @@ static void check_approach(void)
         CHECK_OK(swarf_stock_hash(stock, &hash));
         CHECK(hash == walk_job_fresh(&job, targets[i], 0));
     }
-    /* one back from here, then there by as many calls as records would have it */
     const swarf_history_held held = swarf_history_get_held(history);
     CHECK(held.oldest == 0 && held.record_count > 1 && held.first_bytes > 0);
     swarf_history_destroy(history);

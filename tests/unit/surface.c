@@ -209,8 +209,41 @@ static void check_refine(void)
     swarf_cutter_release(flat);
 }
 
+/* Turned axes cut nothing, as in a simulation: where such a move went, the stock's own top is met. */
+static void check_turned(void)
+{
+    swarf_cutter *cutter = NULL;
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = 1;
+    swarf_stock *stock = NULL;
+    swarf_program *program = NULL;
+    swarf_surface *surface = NULL;
+    const swarf_section section = {.tool = 1};
+    const double start[3] = {-10, 0, 20}, ends[3][3] = {{10, 0, 20}, {10, 15, 20}, {-10, 15, 20}};
+    const double turned[6] = {90};
+    CHECK_OK(swarf_cutter_parse("flat:d=4,l=20", &cutter));
+    const swarf_tool tool = {1, 0, cutter};
+    CHECK_OK(swarf_stock_create_box(&block, &options, &stock));
+    CHECK_OK(swarf_program_create(start, &program));
+    CHECK_OK(swarf_program_add_operation(program, "cut"));
+    CHECK_OK(swarf_program_set_section(program, &section));
+    CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_FEED, ends[0], 100, 1));
+    CHECK_OK(swarf_program_set_axes(program, turned));
+    for (int i = 1; i < 3; i++) CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_FEED, ends[i], 100, 1));
+    if (CHECK_OK(swarf_surface_create(stock, program, &tool, 1, NULL, &surface))) {
+        const double a[2][3] = {{0, 0, 18}, {0, 15, 18}}, b[2][3] = {{0, 0, 26}, {0, 15, 26}}, up[3] = {0, 0, 1};
+        check_hit(surface, a[0], b[0], 2.0 / 8, up, 0);
+        check_hit(surface, a[1], b[1], 7.0 / 8, up, -1);
+    }
+    swarf_surface_release(surface);
+    swarf_program_release(program);
+    swarf_stock_destroy(stock);
+    swarf_cutter_release(cutter);
+}
+
 int main(void)
 {
+    check_turned();
     check_closed_forms();
     check_refine();
     check_cases();

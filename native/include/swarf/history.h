@@ -26,8 +26,8 @@ typedef struct swarf_history swarf_history;
 
 typedef struct swarf_history_options {
     size_t size; /**< sizeof(swarf_history_options) */
-    size_t
-        memory_limit; /**< bytes for what is kept, besides the first stock's copy; 0: a quarter of what is free now */
+    /** Bytes for what is kept, besides the first stock's copy; 0: a quarter of what is free now. */
+    size_t memory_limit;
 } swarf_history_options;
 
 /** No limit given. */
@@ -35,7 +35,7 @@ SWARF_API swarf_history_options swarf_history_options_default(void);
 
 /** What a history holds. */
 typedef struct swarf_history_held {
-    size_t bytes;       /**< all together; `records` and `keyframes` of it are within the limit after every call */
+    size_t bytes;       /**< all together; records and keyframes of it are within the limit between moves */
     size_t first_bytes; /**< the first stock's copy */
     size_t record_bytes, keyframe_bytes;
     size_t record_count, keyframe_count;
@@ -61,8 +61,8 @@ SWARF_API void swarf_history_destroy(swarf_history *history);
  *  until a later call succeeds. */
 SWARF_API swarf_status swarf_history_seek(swarf_history *history, size_t move, double fraction,
                                           const swarf_progress *progress);
-/** Go on towards that position by what takes no longer than one batch of at most 4096 moves; *arrived is set to whether
- *  the stock is there. For who shows the way there, or has other things to do in between. */
+/** Go on towards that position by one batch of at most 4096 moves, or by putting back all that has to be; *arrived is
+ *  set to whether the stock is there. For who shows the way there, or has other things to do in between. */
 SWARF_API swarf_status swarf_history_approach(swarf_history *history, size_t move, double fraction,
                                               const swarf_progress *progress, int *arrived);
 
