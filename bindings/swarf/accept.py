@@ -8,7 +8,7 @@ An acceptance names a reason and at least one thing by which it knows its findin
 
 kind: as in the report; operation, line, text (a part of it); place in mm, where the finding lies no farther than
 ``within`` (default 1 mm); most: only while what was measured (mm of a deviation, depth of a contact, value of a load) is
-no greater than this.
+no greater than this. Where it is only known to be at least so much, "most" accepts nothing.
 """
 from __future__ import annotations
 
@@ -41,11 +41,12 @@ class Acceptance:
                 and (self.text is None or self.text in finding.text)
                 and (self.place is None
                      or (finding.place is not None and math.dist(self.place, finding.place) <= self.within))
-                and (self.most is None or (finding.amount is not None and abs(finding.amount) <= self.most)))
+                and (self.most is None or (finding.amount is not None and not finding.at_least
+                                           and abs(finding.amount) <= self.most)))
 
 
 def _number(value: Any) -> bool:
-    return type(value) in (int, float) and math.isfinite(value)
+    return type(value) in (int, float) and abs(value) < 1e15  # neither NaN nor more than a float can be
 
 
 def make(entry: Any, where: str) -> Acceptance:
@@ -57,12 +58,12 @@ def make(entry: Any, where: str) -> Acceptance:
     if not set(entry) & {"kind", "operation", "line", "text", "place"}:
         raise ValueError(f"{where}: it would accept everything; name kind, operation, line, text or place")
     for key in ("kind", "operation", "text"):
-        if not isinstance(entry.get(key, ""), str):
+        if key in entry and not (isinstance(entry[key], str) and entry[key].strip()):
             raise ValueError(f"{where}: {key}: a text is wanted")
     if type(entry.get("line", 0)) is not int:
         raise ValueError(f"{where}: line: a whole number is wanted")
     place = entry.get("place")
-    if place is not None and not (isinstance(place, (list, tuple)) and len(place) == 3 and all(map(_number, place))):
+    if "place" in entry and not (isinstance(place, (list, tuple)) and len(place) == 3 and all(map(_number, place))):
         raise ValueError(f"{where}: place: three numbers in mm are wanted")
     for key in ("within", "most"):
         if key in entry and not (_number(entry[key]) and entry[key] >= 0):
@@ -75,7 +76,7 @@ def read(path: str) -> list[Acceptance]:
     with open(path, encoding="utf-8") as stream:
         try:
             document = json.load(stream)
-        except ValueError as error:  # JSONDecodeError and what is no UTF-8
+        except (ValueError, RecursionError) as error:  # JSONDecodeError, what is no UTF-8, what is nested too deep
             raise ValueError(f"{path}: is no JSON: {error}") from None
     if not isinstance(document, list):
         raise ValueError(f"{path}: a list of acceptances is wanted")

@@ -50,6 +50,7 @@ def read_job(arguments: argparse.Namespace, bar: Bar) -> Job:
         job.stock = stock
     for number, (cutter, text, teeth) in tools.items():
         job.tools[number], job.tool_names[number] = cutter, text
+        job.teeth.pop(number, None)  # they were another cutter's
         if teeth:
             job.teeth[number] = teeth
     add_holders(job, arguments.holder)

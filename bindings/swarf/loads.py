@@ -43,7 +43,7 @@ def check_limits(limits: Limits, what: str = "limits") -> None:
         for kind, most in entries.items():
             if kind not in KINDS:
                 raise ValueError(f"{of}: {kind!r} is not known; {', '.join(KINDS)} are")
-            if isinstance(most, bool) or not isinstance(most, (int, float)) or not (math.isfinite(most) and most > 0):
+            if isinstance(most, bool) or not isinstance(most, (int, float)) or not 0 < most < 1e15:
                 raise ValueError(f"{of}: {kind}: {most!r} is no number above 0")
 
 
@@ -86,7 +86,7 @@ def read(path: str, material: Optional[str] = None) -> Limits:
     with open(path, encoding="utf-8") as stream:
         try:
             document = json.load(stream)
-        except ValueError as error:  # JSONDecodeError and what is no UTF-8
+        except (ValueError, RecursionError) as error:  # JSONDecodeError, what is no UTF-8, what is nested too deep
             raise ValueError(f"{path}: is no JSON: {error}") from None
 
     def part(entry: Any, of: str, more: tuple[str, ...] = ()) -> Limits:

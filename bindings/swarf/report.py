@@ -129,6 +129,7 @@ def make_verification(done: Verification, input_path: str, seconds_read: float =
             "move": finding.move,
             "place": None if finding.place is None else list(finding.place),
             "amount": finding.amount,
+            "at_least": finding.at_least,
             "accepted": finding.accepted,
         }
         for finding in done.findings

@@ -39,6 +39,7 @@ class Verdict:
     amount: Optional[float] = None
     accepted: Optional[str] = None
     t: float = 0.0  #: how far along the move it is, 0 .. 1
+    at_least: bool = False  #: it may be more than ``amount``
 
 
 @dataclass
@@ -150,7 +151,7 @@ def verify(
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits)
-    made.findings = [*findings_of(job, checked), *_load_findings(job, checked, limits),
+    made.findings = [*findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
                      *_design_findings(solid, first, mesh), *_fixture_findings(first, fixtures, clamps),
                      *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
     for idle in accepting.apply([*job.accepted, *accept], made.findings):
@@ -169,16 +170,18 @@ def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:
     return (names[index] if 0 <= index < len(names) else None), line
 
 
-def findings_of(job: Job, checked: Check) -> list[Verdict]:
-    """What Stock.check() found on a job, and what it says of moves that were not simulated."""
-    return [*_check_findings(job, checked), *_uncut_findings(job, checked)]
+def findings_of(job: Job, checked: Check, voxel: float) -> list[Verdict]:
+    """What Stock.check() found on a job at a voxel size, and what it says of moves that were not simulated."""
+    return [*_check_findings(job, checked, voxel), *_uncut_findings(job, checked)]
 
 
-def _check_findings(job: Job, checked: Check) -> list[Verdict]:
+def _check_findings(job: Job, checked: Check, voxel: float) -> list[Verdict]:
     names = job.program.operations
     return [Verdict(found.severity, found.text, found.kind,
                     names[found.operation] if 0 <= found.operation < len(names) else None, found.line, found.move,
-                    found.tip, amount=found.depth, t=found.t) for found in checked.findings]
+                    found.tip, amount=found.depth, t=found.t,
+                    at_least=found.depth > 2.99 * voxel)  # of a contact no more than three voxels are told
+            for found in checked.findings]
 
 
 def _uncut_findings(job: Job, checked: Check) -> list[Verdict]:
@@ -252,4 +255,4 @@ def _cluster_finding(job: Job, cluster: Cluster, complete: bool) -> Verdict:
     else:
         severity, text = "error" if complete else "warning", f"not reached: {amount} left where no move went"
     return Verdict(severity, text, cluster.kind, operation, line, cluster.moves[0] if cluster.moves else -1,
-                   cluster.place, cluster, cluster.value)
+                   cluster.place, cluster, cluster.value, at_least=bool(cluster.at_least))

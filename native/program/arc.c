@@ -105,6 +105,14 @@ void swarf_path_point(const swarf_path *path, double t, double out[3])
     out[b] = c[b] + sine * u + cosine * v;
 }
 
+void swarf_path_part(const swarf_path *path, double t, swarf_path *out)
+{
+    swarf_path part = *path;
+    swarf_path_point(path, t, part.end);
+    part.arc.angle_rad *= t;
+    *out = part;
+}
+
 double swarf_path_length(const swarf_path *path)
 {
     const double d[3] = {path->end[0] - path->start[0], path->end[1] - path->start[1], path->end[2] - path->start[2]};

@@ -152,25 +152,18 @@ static swarf_status report(struct player *p, size_t move, swarf_check_finding fi
     return SWARF_OK;
 }
 
-static void path_part(const swarf_path *path, double t, swarf_path *out)
-{
-    *out = *path;
-    swarf_path_point(path, t, out->end);
-    out->arc.angle_rad = path->arc.angle_rad * t;
-}
-
 /* Earliest t at which a move touches as its test says. The part of the path up to t touches from there on. */
 static swarf_status first_contact(const struct test *test, const swarf_path *path, double voxel, double *t)
 {
     double lo = 0, hi = 1, depth, point[3];
     const double length = swarf_path_length(path), step = length > 0 ? instant * voxel / length : 1;
     swarf_path part;
-    path_part(path, 0, &part);
+    swarf_path_part(path, 0, &part);
     SWARF_TRY(swarf_cut_touch(test->target, test->body, &part, 1, test->depth, &depth, point));
     if (depth > test->depth) hi = 0;
     while (hi - lo > step) {
         const double middle = 0.5 * (lo + hi);
-        path_part(path, middle, &part);
+        swarf_path_part(path, middle, &part);
         SWARF_TRY(swarf_cut_touch(test->target, test->body, &part, 1, test->depth, &depth, point));
         if (depth > test->depth)
             hi = middle;
@@ -369,11 +362,11 @@ static swarf_status cut(struct player *p, const swarf_check_tool *tool, size_t f
     if (count == 0) return SWARF_OK;
     p->known = 1;
     if (p->stopped) return SWARF_OK;
-    if (!p->result->loads || !tool->flutes->component_count)
-        return swarf_cut_body(p->stock, tool->flutes, p->paths, count, NULL, 0, 1);
-    const swarf_load_batch batch = {p->program, tool->cutter, tool->flutes, tool->teeth, p->first};
     const double from = p->from + (p->to - p->from) * (double)(first - p->batch_first) / (double)p->batch_count;
     const double to = p->from + (p->to - p->from) * (double)(end - p->batch_first) / (double)p->batch_count;
+    if (!p->result->loads || !tool->flutes->component_count)
+        return swarf_cut_body(p->stock, tool->flutes, p->paths, count, p->progress, from, to);
+    const swarf_load_batch batch = {p->program, tool->cutter, tool->flutes, tool->teeth, p->first};
     return swarf_loads_cut(p->result->loads, p->stock, &batch, p->numbers, count, p->progress, from, to);
 }
 
@@ -401,6 +394,9 @@ static swarf_status play_range(struct player *p, const swarf_check_tool *tool, s
     int taken = -1; /* whether the paths are those of feeds, too */
     for (size_t i = 0; i < test_count && status == SWARF_OK; i++) {
         double depth = 0, point[3];
+        status = swarf_progress_report(p->progress, p->from + (p->to - p->from) * (double)(first - p->batch_first) /
+                                                                  (double)p->batch_count);
+        if (status != SWARF_OK) break;
         if (p->found[tests[i].kind] >= MOST_FINDINGS) continue;
         if (tests[i].feeds != taken) {
             status = take_paths(p, first, end, tests[i].rapids, tests[i].feeds, &count);

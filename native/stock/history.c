@@ -443,10 +443,7 @@ static swarf_status cut_part(swarf_history *history, double fraction, const swar
     swarf_path path;
     int cuts;
     SWARF_TRY(find_path(history, history->at, &path, &cuts));
-    double end[3];
-    swarf_path_point(&path, fraction, end);
-    memcpy(path.end, end, sizeof path.end);
-    path.arc.angle_rad *= fraction;
+    swarf_path_part(&path, fraction, &path);
     SWARF_TRY(cut_paths(history, body_of(history, history->at), &path, cuts != 0, progress, from, to));
     history->has_part = 1;
     history->fraction = fraction;

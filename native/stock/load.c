@@ -157,6 +157,20 @@ static swarf_status place_moment(const struct work *w, size_t number, double t, 
     return SWARF_OK;
 }
 
+/* Whether the tool, standing there, is clear of all that the stock can be: nothing would be seen. */
+static int is_away(const struct work *w, const double tip[3])
+{
+    const swarf_tree_layout *layout = swarf_tree_get_layout(w->stock->tree);
+    const swarf_body *body = w->batch->flutes;
+    for (int k = 0; k < 3; k++) {
+        const double low = k == 2 ? body->exact_lo : -body->exact_radius;
+        const double high = k == 2 ? body->exact_hi : body->exact_radius;
+        const double end = layout->origin[k] + layout->voxel * SWARF_NODE_DIM * layout->count[k];
+        if (tip[k] + high < layout->origin[k] - layout->voxel || tip[k] + low > end + layout->voxel) return 1;
+    }
+    return 0;
+}
+
 /* A moment that stands for the steps first .. last, `way` mm after the group began, `ahead` mm farther along. */
 static swarf_status add_moment(struct work *w, size_t first, size_t last, double length, double way, double ahead)
 {
@@ -166,7 +180,7 @@ static swarf_status add_moment(struct work *w, size_t first, size_t last, double
     const double share = step->length > 0 ? fmin(1, (way - step->begin) / step->length) : 0;
     SWARF_TRY(swarf_array_reserve((void **)&w->moments, &w->moment_room, w->moment_count + 1, sizeof *w->moments));
     SWARF_TRY(place_moment(w, step->number, step->t0 + share * (step->t1 - step->t0), ahead, &moment));
-    w->moments[w->moment_count++] = moment;
+    if (!is_away(w, moment.tip)) w->moments[w->moment_count++] = moment; /* moves may go on for a kilometre */
     return SWARF_OK;
 }
 
@@ -244,14 +258,11 @@ static swarf_status tracks_before(const struct work *w, const struct moment *mom
     swarf_path path, part;
     SWARF_TRY(swarf_program_path(w->batch->program, step->number, &path));
     const double t = step->t0 + (step->t1 - step->t0) * fmin(1, (until - step->begin) / fmax(step->length, 1e-12));
-    part = path;
-    if (curved)
-        part.arc.angle_rad *= t;
-    else {
+    swarf_path_part(&path, t, &part);
+    if (!curved) {
         part.is_arc = 0;
         swarf_path_point(&path, step->t0, part.start);
     }
-    swarf_path_point(&path, t, part.end);
     return swarf_track_append(out, &part, layout->origin, layout->voxel);
 }
 
@@ -335,11 +346,13 @@ static void share_volume(struct work *w, double volume)
 
 static void note_sides(struct work *w)
 {
+    const swarf_move *moves = swarf_program_moves(w->batch->program);
     for (size_t i = 0; i < w->moment_count; i++) {
         const struct moment *moment = &w->moments[i];
         for (size_t k = moment->first; k <= moment->last; k++) {
             const size_t at = w->steps[k].number - w->batch->origin;
             const double share = share_of(w, moment, k);
+            if (swarf_move_get_kind(&moves[w->steps[k].number]) == SWARF_MOVE_RAPID) continue;
             w->loads->side[at] += moment->seen.side * share;
             w->loads->area[at] += moment->seen.area * share;
         }

@@ -23,7 +23,7 @@ struct swarf_simulation {
 };
 
 /* No more moves than this at once: 100 MB of tracks and bins, while a batch is already as good as the whole. */
-enum { MOST_AT_ONCE = 1 << 18 };
+enum { MOST_AT_ONCE = 1 << 18, WATCHED_AT_ONCE = 1 << 14 };
 
 struct player {
     swarf_stock *stock;
@@ -258,7 +258,7 @@ swarf_status swarf_simulate_watched(swarf_stock *stock, const swarf_program *pro
                             .watch = watch,
                             .first = first,
                             .count = count,
-                            .batch = MOST_AT_ONCE};
+                            .batch = watch ? WATCHED_AT_ONCE : MOST_AT_ONCE};
     if (options && options->batch && options->batch < player.batch) player.batch = options->batch;
     if (per_move) player.batch = 1;
     swarf_simulation *result = calloc(1, sizeof *result);

@@ -9,6 +9,7 @@ import pytest
 
 import swarf
 from swarf import accept, document, loads, plots, report
+from swarf.verify import Verdict
 from test_verify import DESIGN, faced, HI, LO
 
 
@@ -31,6 +32,9 @@ def test_a_slot_and_its_neighbour():
     assert math.isclose(sum(found["volume"]), checked.simulation.volume_initial - checked.simulation.volume_final,
                         rel_tol=1e-6)
     assert found["angle"][0] == 0 and found["volume"][0] == 0  # a rapid through air
+    program = swarf.Program.parse_gcode("G21 G90\nT1 M6\nS8000 M3\nG0 X-5 Y15 Z5\nG0 Z-1\nG0 X45\nG0 X900000\nM2\n")
+    rapid = swarf.Stock.box(LO, HI, 0.5).check(program, job.tools, loads=True).loads
+    assert max(rapid["volume"]) > 100 and not any(rapid["climb"]) and not any(rapid["angle"])
     again = swarf.Stock.box(LO, HI, 0.25).check(job.program, job.tools)
     assert again.loads is None
     assert math.isclose(again.simulation.volume_final, checked.simulation.volume_final, rel_tol=1e-9)
@@ -111,11 +115,21 @@ def test_acceptances():
         assert not done.passed and any(found.kind == "acceptance" for found in done.findings)
 
 
+def test_what_is_only_known_to_be_as_much_is_not_accepted_as_no_more():
+    acceptance = accept.make({"reason": "x", "kind": "holder", "most": 2}, "here")
+    finding = Verdict("error", "holder", "holder", amount=1.5)
+    assert acceptance.knows(finding)
+    finding.at_least = True
+    assert not acceptance.knows(finding)
+
+
 def test_acceptances_that_cannot_be(tmp_path):
     path = tmp_path / "accept.json"
     for text, word in (("{}", "list"), ("[", "JSON"), ('[{"kind": "gouge"}]', "reason"), ('[{"reason": " "}]', "reason"),
                        ('[{"reason": "x"}]', "everything"), ('[{"reason": "x", "what": 1}]', "wanted"),
                        ('[{"reason": "x", "line": "3"}]', "line"), ('[{"reason": "x", "place": [1, 2]}]', "place"),
+                       ('[{"reason": "x", "text": ""}]', "text"), ('[{"reason": "x", "place": null}]', "place"),
+                       ('[{"reason": "x", "line": 1, "most": 1%s}]' % (400 * "0"), "most"), (3000 * "[", "JSON"),
                        ('[{"reason": "x", "kind": 3}]', "kind"), ('[{"reason": "x", "line": 1, "most": -1}]', "most")):
         path.write_text(text)
         with pytest.raises(ValueError, match=word) as raised:

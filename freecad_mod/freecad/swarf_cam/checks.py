@@ -29,4 +29,4 @@ def run(job, voxel_mm, tolerance_mm, progress):
             doubts.append(Verdict("warning", str(error), "design"))
     stock = make_stock(job.stock, voxel=voxel_mm, progress=lambda done: report("stock", done))
     checked = stock.check(job.program, job.tools, teeth=job.teeth, progress=lambda done: report("cut", done))
-    return doubts + findings_of(job, checked)
+    return doubts + findings_of(job, checked, voxel_mm)

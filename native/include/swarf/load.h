@@ -2,16 +2,21 @@
 /* Load: what each move asks of its tool, seen against the stock as it is just before the move takes its share.
  *
  * At moments along a move the part of the flutes' surface that faces the motion is held against the material there.
- * What of it lies in material gives, with n the outward normal and v the direction of the motion: depth   its extent
- * along the tool's axis (of a plunge with a flat end: 0) width   its extent across the motion, level; of a plunge the
- * greater extent of both level axes angle   the turn of the tool spent in material, at the height where that is most:
- * of the half turn that faces the motion, of plunges of the whole turn chip    feed per tooth times the greatest n . v
- *   rate    the integral of n . v over it, times the feed
+ * What of it lies in material gives, with n the outward normal and v the direction of the motion:
+ *
+ *   - depth: its extent along the tool's axis (of a plunge with a flat end: 0)
+ *   - width: its extent across the motion, level; of a plunge the greater extent of both level axes
+ *   - angle: the turn of the tool spent in material, at the height where that is most: of the half turn that faces the
+ *     motion, of plunges of the whole turn
+ *   - chip: feed per tooth times the greatest n . v
+ *   - rate: the integral of n . v over it, times the feed
+ *
  * Rapids have no loads, only the volume that they remove. Between samples the ends of what lies in material are found
  * by bisection, to a hundredth of a voxel and as well as the stock is known there (faces: a hundredth of a voxel,
  * beside edges up to half of one). Not seen are layers thinner than 0.35 voxel, parts narrower than a sixty-fourth of
- * the turn, and layers between samples along the axis (a voxel apart at the tip, a twenty-fourth of the flutes' length
- * farther up). Moments are two voxels or a quarter of the tool's radius apart; moves shorter than that share them.
+ * the turn (of plunges a thirty-second), and layers between samples along the axis (a voxel apart at the tip, a
+ * twenty-fourth of the flutes' length farther up). Moments are two voxels or a quarter of the tool's radius apart;
+ * moves shorter than that share them.
  */
 #ifndef SWARF_LOAD_H
 #define SWARF_LOAD_H

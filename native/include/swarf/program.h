@@ -179,6 +179,8 @@ SWARF_API swarf_status swarf_program_path(const swarf_program *program, size_t i
 
 /** Point of a path at parameter t in 0..1. */
 SWARF_API void swarf_path_point(const swarf_path *path, double t, double out[3]);
+/** The part of a path from its start to t (0 .. 1). Any thread. */
+SWARF_API void swarf_path_part(const swarf_path *path, double t, swarf_path *out);
 /** Length of a path in mm (arc length of a helix). */
 SWARF_API double swarf_path_length(const swarf_path *path);
 
