@@ -26,12 +26,13 @@ class Picking:
         panel = self._panel
         if panel.session is None or panel.view.camera is None:
             return
-        view, place = panel.current_view(), panel.transport.at
-        panel.call(lambda session, progress: session.pick(view, x, y, place), self._answered)
+        view, place, asked = panel.current_view(), panel.transport.at, panel.session
+        panel.call(lambda session, progress: session.pick(view, x, y, place),
+                   lambda found, error: self._answered(asked, found, error))
 
-    def _answered(self, found, error):
+    def _answered(self, asked, found, error):
         panel = self._panel
-        if panel.session is None:
+        if panel.session is not asked:  # the job was closed or read again meanwhile
             return
         if error is not None:
             panel.fail(error)
