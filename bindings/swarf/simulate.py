@@ -132,8 +132,8 @@ def simulate(
 
     ``voxel`` in mm, or ``resolution`` voxels along the stock's longest edge (512 unless told); ``batch`` as in
     Stock.simulate(). The stock is compared with the design when the job has one. A mesh is made when ``mesh`` is true
-    or an output needs it; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file. Seconds of each
-    stage are in the result. Raises what the stages raise; nothing is written before the cutting is done.
+    or an output needs it; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file. Seconds
+    of each stage are in the result. Raises what the stages raise; nothing is written before the cutting is done.
     """
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")

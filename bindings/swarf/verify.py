@@ -112,11 +112,11 @@ def verify(
     ``tolerance`` in mm is for both sides; ``excess`` (material left) and ``gouge`` (material missing) set one of them.
     ``allowance`` is material that is meant to be left. Material left where no move went is a warning, with
     ``complete`` an error. Rapids through material, shanks and holders that touch it, and all else that Stock.check()
-    looks for are findings too, as are moves that cannot be simulated (turned axes) and
-    operations that remove nothing; ``fixtures`` and ``clearance`` are
-    handed to it. ``loads`` measures what each move asks of its tool; beyond ``limits`` (see swarf.loads) it is a
-    warning. Findings that ``accept`` or the job's document knows do not fail. ValueError without a design or moves; GeometryError where the
-    design encloses nothing; whatever make_stock() and Stock.check() raise.
+    looks for are findings too, as are moves that cannot be simulated (turned axes) and operations that remove nothing;
+    ``fixtures`` and ``clearance`` are handed to it. ``loads`` measures what each move asks of its tool; beyond
+    ``limits`` (see swarf.loads) it is a warning. Findings that ``accept`` or the job's document knows do not fail.
+    ValueError without a design or moves; GeometryError where the design encloses nothing; whatever make_stock() and
+    Stock.check() raise.
     """
     mesh = job.design if design is None else design
     if mesh is None:

@@ -18,11 +18,15 @@ swarf_status swarf_deviation_pixels(const swarf_solid *design, const double *pos
     void *array = NULL;
     size_t room = 0, used = 0, at = 0;
     for (size_t i = 0; i < count; i++) used += seen[i] == SWARF_SEEN_STOCK;
+    if (used == 0) {
+        for (size_t i = 0; i < count; i++) value[i] = NAN;
+        return SWARF_OK;
+    }
     SWARF_TRY(swarf_array_reserve(&array, &room, used, 4 * sizeof(double)));
-    double *points = array, *distance = points ? points + 3 * used : NULL;
+    double *points = array, *distance = points + 3 * used;
     for (size_t i = 0; i < count; i++)
         if (seen[i] == SWARF_SEEN_STOCK) memcpy(points + 3 * at++, position + 3 * i, 3 * sizeof *points);
-    const swarf_status status = used ? swarf_solid_distance(design, points, used, progress, distance, NULL) : SWARF_OK;
+    const swarf_status status = swarf_solid_distance(design, points, used, progress, distance, NULL);
     for (size_t i = at = 0; i < count && !status; i++)
         value[i] = seen[i] == SWARF_SEEN_STOCK ? distance[at++] - allowance : NAN;
     free(array);

@@ -17,9 +17,9 @@ swarf_status swarf_contour_near_get(contour_near *near, const int at[3], const s
     if (!*part) {
         swarf_box box;
         for (int k = 0; k < 3; k++) {
-            const double first = near->block->ijk[k] + at[k] / PART * PART;
+            const int32_t first = near->block->ijk[k] + at[k] / PART * PART, end = first + PART;
             box.lo[k] = work->layout->origin[k] + (first - around) * work->layout->voxel;
-            box.hi[k] = work->layout->origin[k] + (first + PART + around) * work->layout->voxel;
+            box.hi[k] = work->layout->origin[k] + (end + around) * work->layout->voxel;
         }
         SWARF_TRY(swarf_surface_near_create(work->surface, part));
         SWARF_TRY(swarf_surface_gather(*part, work->moves, &box));

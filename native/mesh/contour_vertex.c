@@ -117,9 +117,12 @@ static int outside(const double x[3])
 /* A corner that lies in another cell is not this cell's: its edge is, or its face. */
 static int meet_inside(const contour_plane *planes, int count, const double about[3], double out[3])
 {
-    int rank = swarf_contour_meet(planes, count, about, least_eigenvalue, out);
-    for (double stricter = 5 * least_eigenvalue; rank > 1 && outside(out) && stricter < 1; stricter *= 5)
-        rank = swarf_contour_meet(planes, count, about, stricter, out);
+    double least = least_eigenvalue;
+    int rank = swarf_contour_meet(planes, count, about, least, out);
+    while (rank > 1 && outside(out) && 5 * least < 1) {
+        least *= 5;
+        rank = swarf_contour_meet(planes, count, about, least, out);
+    }
     return rank;
 }
 
