@@ -197,6 +197,7 @@ static double between_edges(const ring *around, int j)
         side_of[i] = around->crease[i] && around->crease[j] ? -1 : side;
     }
     for (int k = 0; k < n; k++) {
+        /* cppcheck-suppress uninitvar ; all but that of j are set */
         if (k == j || k == (j + 1) % n || k == (j + n - 1) % n || side_of[k] < 0) continue;
         for (int i = 0; i < n; i++)
             if (i != j && i != k && side_of[i] == side_of[k]) most = most_of(most, where_they_pass(around, i, j, k));
