@@ -233,14 +233,35 @@ static swarf_status read_setting(const swarf_machine *machine, swarf_block *bloc
     return SWARF_OK;
 }
 
+static char upper(char c)
+{
+    return c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+}
+
+/* Statements of Fanuc's macro language begin as words do, but say what O words say. */
+static swarf_status refuse_statement(const swarf_machine *machine, const char *at, const char *end)
+{
+    static const char *const names[] = {"WHILE", "IF", "GOTO", "THEN", "END", "DO"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        uint32_t length = 0;
+        while (names[i][length] && at + length < end && upper(at[length]) == names[i][length]) length++;
+        if (names[i][length]) continue;
+        const char after = at + length < end ? upper(at[length]) : ' ';
+        if (after >= 'A' && after <= 'Z') continue; /* IFIX[...]: a value of I */
+        const swarf_word word = {0.0, at, length, 0};
+        return swarf_gcode_fail(machine, &word,
+                                "is a statement of macros, which are not read; write O words (o100 while [...])");
+    }
+    return SWARF_OK;
+}
+
 static swarf_status read_words(swarf_machine *machine, swarf_block *block, const char *at)
 {
     const char *end = block->end;
     int first = 1;
     while (at < end) {
         swarf_word word = {0.0, at, 1, 0};
-        char letter = *at;
-        if (letter >= 'a' && letter <= 'z') letter = (char)(letter - 'a' + 'A');
+        const char letter = upper(*at);
         if (letter == '#') {
             SWARF_TRY(read_setting(machine, block, &at));
         } else if (letter == 'O' && first) {
@@ -256,6 +277,7 @@ static swarf_status read_words(swarf_machine *machine, swarf_block *block, const
                 if (value == end || !(*value == '#' || *value == '[' || *value == '-' || *value == '+' ||
                                       (*value >= 'a' && *value <= 'z') || (*value >= 'A' && *value <= 'Z')))
                     return swarf_gcode_fail(machine, &word, "has no number; expected digits after it");
+                SWARF_TRY(refuse_statement(machine, word.at, end));
                 SWARF_TRY(swarf_value_read(machine, &value, end, &word.value));
                 at = value;
             }

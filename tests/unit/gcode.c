@@ -342,6 +342,10 @@ static void test_all_codes(void)
         else
             refuse(line, line);
     }
+    refuse("WHILE [#1 LT 3] DO1", "part.nc:1:1: error: 'WHILE' is a statement of macros");
+    refuse("N5 if[#1 EQ 1] GOTO 10", "part.nc:1:4: error: 'if' is a statement of macros");
+    refuse("X1 GOTO10", "'GOTO' is a statement of macros");
+    refuse("END1", "'END' is a statement of macros");
     refuse("G41 D1", "part.nc:1:5: error: 'D1' needs the diameter of tool T1; give the tool or a tool table");
     refuse("G76", "'G76' is a cycle of lathes; this is a milling simulation");
     refuse("G7", "diameter mode of lathes");
