@@ -77,7 +77,8 @@ def image(data: bytes, alternative: str) -> str:
 
 def scale_colour(value: float) -> str:
     """CSS colour of a deviation in tolerances."""
-    colour = deviation_colours(memoryview(struct.pack("d", value)).cast("B").cast("d", (1, 1)), bytes((184, 184, 184, 255)), 1.0)
+    values = memoryview(struct.pack("d", value)).cast("B").cast("d", (1, 1))
+    colour = deviation_colours(values, bytes((184, 184, 184, 255)), 1.0)
     return "#%02x%02x%02x" % tuple(colour[:3])
 
 

@@ -109,11 +109,12 @@ static void blend(float colour[3], const float other[3], float part)
     for (int channel = 0; channel < 3; channel++) colour[channel] += part * (other[channel] - colour[channel]);
 }
 
+/* Red where material is left, blue where it is missing, as swarf_deviation_colours() has it. */
 static void deviation_colour(float value, float range, float out[3])
 {
     static const float within[3] = {0.12f, 0.50f, 0.16f};
-    static const float excess[3] = {0.05f, 0.12f, 0.75f}, gouge[3] = {0.75f, 0.05f, 0.03f};
-    static const float most[2][3] = {{0.02f, 0.45f, 0.60f}, {0.80f, 0.62f, 0.06f}};
+    static const float excess[3] = {0.75f, 0.05f, 0.03f}, gouge[3] = {0.05f, 0.12f, 0.75f};
+    static const float most[2][3] = {{0.80f, 0.62f, 0.06f}, {0.02f, 0.45f, 0.60f}};
     const float part = fminf(fabsf(value) / range, 1);
     memcpy(out, within, sizeof within);
     if (part > 0.1f) {

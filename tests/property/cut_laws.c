@@ -4,7 +4,8 @@
  *
  * What "the same field" means depends on the law. Within one batch nothing may change a bit. Between different batches
  * a voxel whose value is beyond sqrt(3) voxels on the outside holds no information (its leaf may have been dropped at
- * different times), so such values may differ; all others may not.
+ * different times), so such values may differ; all others may not. (With thousands of moves they can, too, beside
+ * edges outside of the material, where a track that another one dominates may tell a shorter distance; never a sign.)
  */
 #include <math.h>
 #include <stdlib.h>

@@ -217,7 +217,7 @@ static void check_light(swarf_stock *stock, swarf_scene *scene)
     options.values = values;
     CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, other));
     const uint8_t *left = other + 4 * (10 * 80 + 25), *right = other + 4 * (10 * 80 + 55);
-    CHECK(left[0] > left[2] + 40 && right[2] > right[0] + 40); /* gouge red, excess blue */
+    CHECK(left[2] > left[0] + 40 && right[0] > right[2] + 40); /* gouge blue, excess red */
     swarf_program_release(program);
 }
 

@@ -107,7 +107,7 @@ typedef enum swarf_colouring {
     SWARF_COLOURING_TOOL,      /**< a colour per tool number */
     SWARF_COLOURING_AGE,       /**< from old to just cut, among the moves before `moves_done` */
     SWARF_COLOURING_FEED,      /**< from the slowest to the fastest feed */
-    SWARF_COLOURING_DEVIATION, /**< `values`: gouge red, excess blue, within +- value_range / 10 green */
+    SWARF_COLOURING_DEVIATION, /**< `values`: excess red, gouge blue, within +- value_range / 10 green */
     SWARF_COLOURING_COUNT
 } swarf_colouring;
 
