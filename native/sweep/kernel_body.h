@@ -11,9 +11,9 @@
 
 /* `voxels`: how many above each other are wanted, 8 or fewer; the others get any value. */
 INLINE void distance_group(const swarf_body *body, const swarf_column *c, const int32_t *list, size_t count, lanes x,
-                           lanes y, float z0, int voxels, float out[128])
+                           lanes y, float z0, int voxels, lanes best[8])
 {
-    lanes best[8], squares[8];
+    lanes squares[8];
     for (int z = 0; z < 8; z++) {
         best[z] = all(far_away);
         squares[z] = all(far_away);
@@ -35,12 +35,9 @@ INLINE void distance_group(const swarf_body *body, const swarf_column *c, const 
     }
     /* where no ball is within the band its root is not worth taking */
     const float reach = body->radius + SWARF_HALF_WIDTH;
-    for (int z = 0; z < 8; z++) {
-        lanes value = best[z];
-        if (ball && bits(less(squares[z], all(reach * reach))))
-            value = minimum(value, root(maximum(squares[z], all(0))) - body->radius);
-        store(out + z * LANES, value);
-    }
+    for (int z = 0; ball && z < 8; z++)
+        if (bits(less(squares[z], all(reach * reach))))
+            best[z] = minimum(best[z], root(maximum(squares[z], all(0))) - body->radius);
 }
 
 static const float lane_x[LANES] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
@@ -48,58 +45,70 @@ static const float lane_y[LANES] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2,
 
 static float distance(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count)
 {
-    _Alignas(64) float found[128];
+    lanes found[8];
     distance_group(body, column, list, count, all(0), all(0), 0, 1, found);
-    return found[0];
+    return found[0][0];
 }
 
-/* What becomes of the sixteen columns of a group. */
+/* What becomes of the leaf. Columns come in pairs: the eight voxels of one and those of the next in y. */
 struct leaf_state {
-    octet least, most;
-    unsigned char mask[64];
+    lanes least, most;
+    lanes outside; /* the background */
+    float *values;
+    unsigned char *active; /* bits: within the background */
+    int solid;             /* values were not set yet: all inside */
 };
 
-INLINE void put(swarf_leaf_cut *leaf, struct leaf_state *state, int place, octet value)
+INLINE void put(struct leaf_state *state, int place, lanes value)
 {
-    store8(leaf->values + place * 8, value);
-    state->least = minimum8(state->least, value);
-    state->most = maximum8(state->most, value);
-    state->mask[place] = (unsigned char)within8(value, all8(leaf->background));
+    const uint16_t within = (uint16_t)bits(less(magnitude(value), state->outside));
+    store(state->values + place * 8, value);
+    state->least = minimum(state->least, value);
+    state->most = maximum(state->most, value);
+    memcpy(state->active + place, &within, sizeof within);
 }
 
-/* Place of lane `lane` of the group whose low corner is (gx, gy): its column's number in the leaf. */
-INLINE int column_of(int gx, int gy, int lane)
+/* Number in the leaf of the first column of pair 0 .. 7 of the group whose low corner is (gx, gy). */
+INLINE int place_of_pair(int gx, int gy, int pair)
 {
-    return (gx + lane / 4) * 8 + gy + lane % 4;
+    return (gx + pair / 2) * 8 + gy + pair % 2 * 2;
 }
 
-INLINE void keep_group(swarf_leaf_cut *leaf, struct leaf_state *state, int gx, int gy)
+INLINE lanes held(const struct leaf_state *state, int place, int solid)
 {
-    for (int lane = 0; lane < LANES; lane++) {
-        const int place = column_of(gx, gy, lane);
-        put(leaf, state, place, leaf->solid ? all8(-leaf->background) : load8(leaf->values + place * 8));
+    return solid ? all(0) - state->outside : load(state->values + place * 8);
+}
+
+INLINE void keep_group(struct leaf_state *state, int gx, int gy)
+{
+    for (int pair = 0; pair < 8; pair++) {
+        const int place = place_of_pair(gx, gy, pair);
+        put(state, place, held(state, place, state->solid));
     }
 }
 
-INLINE void remove_group(swarf_leaf_cut *leaf, struct leaf_state *state, int gx, int gy)
+INLINE void remove_group(struct leaf_state *state, int gx, int gy)
 {
-    for (int lane = 0; lane < LANES; lane++) put(leaf, state, column_of(gx, gy, lane), all8(leaf->background));
+    for (int pair = 0; pair < 8; pair++) put(state, place_of_pair(gx, gy, pair), state->outside);
 }
 
-/* values = max(values, -found), turned from sixteen columns side by side to columns of eight voxels. */
-INLINE void merge_group(swarf_leaf_cut *leaf, struct leaf_state *state, int gx, int gy, const float found[128])
+/* values = max(values, -found). */
+INLINE void merge_pairs(struct leaf_state *state, int gx, int gy, const lanes found[8], float voxel, int solid)
 {
-    const octet outside = all8(leaf->background), inside = all8(-leaf->background), scale = all8(-leaf->voxel);
-    for (int half = 0; half < LANES; half += 8) {
-        octet row[8];
-        for (int z = 0; z < 8; z++) row[z] = load8(found + z * LANES + half);
-        transpose8(row);
-        for (int k = 0; k < 8; k++) {
-            const int place = column_of(gx, gy, half + k);
-            const octet old = leaf->solid ? inside : load8(leaf->values + place * 8);
-            put(leaf, state, place, maximum8(old, minimum8(row[k] * scale, outside)));
-        }
+    for (int pair = 0; pair < 8; pair++) {
+        const int place = place_of_pair(gx, gy, pair);
+        put(state, place, maximum(held(state, place, solid), minimum(found[pair] * all(-voxel), state->outside)));
     }
+}
+
+/* `found`: eight layers of sixteen columns. */
+INLINE void merge_group(struct leaf_state *state, int gx, int gy, lanes found[8], float voxel)
+{
+    stand_up(found);
+    if (state->solid)
+        merge_pairs(state, gx, gy, found, voxel, 1);
+    else
+        merge_pairs(state, gx, gy, found, voxel, 0);
 }
 
 /* Enough tracks that looking at each quarter of the leaf on its own pays. */
@@ -107,8 +116,13 @@ enum { FEW = 3 };
 
 static int cut(const swarf_body *body, const swarf_column *c, const int32_t *list, size_t count, swarf_leaf_cut *leaf)
 {
-    struct leaf_state state = {.least = all8(leaf->background), .most = all8(-leaf->background)};
-    _Alignas(64) float found[128];
+    unsigned char active[64];
+    struct leaf_state state = {.least = all(leaf->background),
+                               .most = all(-leaf->background),
+                               .outside = all(leaf->background),
+                               .values = leaf->values,
+                               .active = active,
+                               .solid = leaf->solid};
     int touched = 0;
     swarf_block blocks[4];
     for (int g = 0; g < 4; g++)
@@ -120,29 +134,23 @@ static int cut(const swarf_body *body, const swarf_column *c, const int32_t *lis
     for (int g = 0; g < 4; g++) {
         const int gx = (g >> 1) * 4, gy = (g & 1) * 4;
         if (removed >> g & 1) {
-            remove_group(leaf, &state, gx, gy);
+            remove_group(&state, gx, gy);
         } else if (counts[g] == 0) {
-            keep_group(leaf, &state, gx, gy);
+            keep_group(&state, gx, gy);
             continue;
         } else {
+            lanes found[8];
             distance_group(body, c, each ? c->list[LIST_GROUPS + g] : list, counts[g],
                            load(lane_x) + (leaf->x + (float)gx), load(lane_y) + (leaf->y + (float)gy), leaf->z, 8,
                            found);
-            merge_group(leaf, &state, gx, gy, found);
+            merge_group(&state, gx, gy, found, leaf->voxel);
         }
         touched = 1;
     }
     if (!touched) return 0;
-    memcpy(leaf->mask, state.mask, sizeof state.mask);
-    float lows[8], highs[8];
-    store8(lows, state.least);
-    store8(highs, state.most);
-    leaf->least = lows[0];
-    leaf->most = highs[0];
-    for (int k = 1; k < 8; k++) {
-        leaf->least = lows[k] < leaf->least ? lows[k] : leaf->least;
-        leaf->most = highs[k] > leaf->most ? highs[k] : leaf->most;
-    }
+    memcpy(leaf->mask, active, sizeof active);
+    leaf->least = least_lane(state.least);
+    leaf->most = -least_lane(all(0) - state.most);
     return 1;
 }
 

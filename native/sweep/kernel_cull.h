@@ -5,8 +5,14 @@
 
 #include "sweep/kernel_plan.h"
 
-/* Bounds over a block of the distance to a swept cylinder, for sixteen tracks, and of the height of its bottom.
- * `covers` is greater than -SWARF_HALF_WIDTH unless side and top leave the whole block to the bottom. */
+/* Blocks: one and the same for sixteen tracks, or sixteen for one and the same track. */
+struct block_lanes {
+    lanes x, y, z;
+    float half, half_z;
+};
+
+/* Bounds over a block of the distance to a swept cylinder, for sixteen pairs of track and block, and of the height of
+ * its bottom. `covers` is greater than -SWARF_HALF_WIDTH unless side and top leave the whole block to the bottom. */
 struct shaft_bounds {
     lanes least, most;
     lanes floor_least, floor_most, covers;
@@ -29,8 +35,8 @@ INLINE lanes shaft_lateral(const struct sixteen *t, float radius)
 
 /* Lower bound, for the enclosing cylinder (radius, lo .. hi above the tip): beside it, below its lowest or above its
  * highest point, or beyond one of the two slanted planes that hold its bottom and top. */
-INLINE void shaft_least(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi,
-                        struct shaft_bounds *bounds)
+INLINE void shaft_least(const struct sixteen *t, const struct block_lanes *b, float reach, float radius, float lo,
+                        float hi, struct shaft_bounds *bounds)
 {
     const lanes bottom = t->z + lo, top = t->z + hi + t->rise;
     const lanes lateral = shaft_lateral(t, radius) - reach;
@@ -39,14 +45,14 @@ INLINE void shaft_least(const struct sixteen *t, const swarf_block *b, float rea
     const lanes support = t->m * t->im * reach + t->im * b->half_z;
     const lanes plane = t->m * (t->line_s - radius) + bottom;
     const lanes under = (plane - b->z) * t->im - support;
-    const lanes over = (all(b->z) - (t->m * (t->line_s + radius) + top)) * t->im - support;
+    const lanes over = (b->z - (t->m * (t->line_s + radius) + top)) * t->im - support;
     bounds->least = maximum(maximum(lateral, maximum(below, above)), maximum(under, over));
     bounds->floor_least = maximum(lowest, plane - t->m * reach);
 }
 
 /* Upper bound, for a cylinder inside: the deepest point of the block's side, bottom and top. */
-INLINE void shaft_most(const struct sixteen *t, const swarf_block *b, float reach, float radius, float lo, float hi,
-                       struct shaft_bounds *bounds)
+INLINE void shaft_most(const struct sixteen *t, const struct block_lanes *b, float reach, float radius, float lo,
+                       float hi, struct shaft_bounds *bounds)
 {
     const lanes bottom = t->z + lo, top = t->z + hi + t->rise;
     const lanes lateral = shaft_lateral(t, radius) + reach;
@@ -64,11 +70,11 @@ INLINE void shaft_most(const struct sixteen *t, const swarf_block *b, float reac
 
 /* Both bounds for balls: all points within the radius of a strip (see ball_line()), below the top. `reach` to vertical
  * edges of the block, `corner` to its corners. */
-INLINE void ball_bounds(const swarf_body *body, const struct sixteen *t, const swarf_block *b, float reach,
+INLINE void ball_bounds(const swarf_body *body, const struct sixteen *t, const struct block_lanes *b, float reach,
                         struct shaft_bounds *bounds)
 {
     const float corner = sqrtf(reach * reach + b->half_z * b->half_z);
-    const lanes ez = all(b->z) - t->z - body->core_lo;
+    const lanes ez = b->z - t->z - body->core_lo;
     const lanes on = clamped(t->line_s, t->s0, t->s1), beyond = t->line_s - on;
     const lanes beside = pick(t->is_arc, t->arc * t->arc, beyond * beyond + t->w * t->w);
     const lanes q = clamped(t->x * t->dx + t->y * t->dy + ez * t->dz, t->t0, t->t1);
@@ -79,7 +85,7 @@ INLINE void ball_bounds(const swarf_body *body, const struct sixteen *t, const s
     const lanes top = t->z + body->z_hi + t->rise;
     const lanes above = (b->z - b->half_z) - (t->m * t->s1 + top);
     const lanes over =
-        (all(b->z) - (t->m * (t->line_s + body->radius) + top)) * t->im - (t->m * t->im * reach + t->im * b->half_z);
+        (b->z - (t->m * (t->line_s + body->radius) + top)) * t->im - (t->m * t->im * reach + t->im * b->half_z);
     bounds->least = maximum(maximum(strip - corner, lateral - reach), maximum(above, over));
     /* wholly above the centre's line only the place in the plane counts */
     const lanes below = t->m * clamped(t->line_s + reach, t->s0, t->s1) - (ez - b->half_z);
@@ -123,21 +129,38 @@ INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, in
     return t;
 }
 
-/* Place the tracks relative to a block. */
-INLINE void face_block(const swarf_column *c, const int32_t *at, const swarf_block *b, struct sixteen *t)
+/* Place the tracks `at` (blocks: the one track) relative to the blocks. */
+INLINE void face_blocks(const swarf_column *c, const int32_t *at, const struct block_lanes *b, int one_track,
+                        struct sixteen *t)
 {
-    t->x = all(b->x) - t->base_x;
-    t->y = all(b->y) - t->base_y;
+    t->x = b->x - t->base_x;
+    t->y = b->y - t->base_y;
     t->s = t->x * t->ux + t->y * t->uy;
     t->w = t->y * t->ux - t->x * t->uy;
     t->line_s = t->s;
     t->arc = all(0);
     if (!c->arcs) return;
-    float plan[LANES];
-    for (int k = 0; k < LANES; k++)
-        plan[k] = c->kind[at[k]] & TRACK_ARC ? arc_distance(c, at[k], all(b->x), all(b->y))[0] : 0;
-    t->arc = load(plan);
+    if (one_track) {
+        if (c->kind[at[0]] & TRACK_ARC) t->arc = arc_distance(c, at[0], b->x, b->y);
+    } else {
+        float plan[LANES];
+        for (int k = 0; k < LANES; k++)
+            plan[k] = c->kind[at[k]] & TRACK_ARC ? arc_distance(c, at[k], b->x, b->y)[0] : 0;
+        t->arc = load(plan);
+    }
     t->line_s = pick(t->is_arc, all(0), t->s);
+}
+
+INLINE void find_bounds(const swarf_body *body, const struct sixteen *t, const struct block_lanes *b,
+                        struct shaft_bounds *bounds)
+{
+    const float reach = b->half * 1.41421357f; /* from the middle of a block to its vertical edges */
+    if (body->kind == SWARF_BODY_BALL) {
+        ball_bounds(body, t, b, reach, bounds);
+    } else {
+        shaft_least(t, b, reach, body->radius, body->z_lo, body->z_hi, bounds);
+        shaft_most(t, b, reach, body->core_radius, body->core_lo, body->core_hi, bounds);
+    }
 }
 
 /* What is known of one block while its list is made. */
@@ -152,15 +175,10 @@ INLINE int cull_sixteen(const swarf_body *body, const swarf_column *c, const int
                         const swarf_block *b, struct sixteen *t, struct culling *state, int32_t *out, float *bound,
                         float *floor)
 {
-    const float reach = b->half * 1.41421357f; /* from the middle of the block to its vertical edges */
+    const struct block_lanes here = {all(b->x), all(b->y), all(b->z), b->half, b->half_z};
     struct shaft_bounds bounds;
-    face_block(c, at, b, t);
-    if (body->kind == SWARF_BODY_BALL) {
-        ball_bounds(body, t, b, reach, &bounds);
-    } else {
-        shaft_least(t, b, reach, body->radius, body->z_lo, body->z_hi, &bounds);
-        shaft_most(t, b, reach, body->core_radius, body->core_lo, body->core_hi, &bounds);
-    }
+    face_blocks(c, at, &here, 0, t);
+    find_bounds(body, t, &here, &bounds);
     if (bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
     unsigned keep = bits(less(bounds.least, all(SWARF_HALF_WIDTH))) & valid;
     if (!keep) return 0;
@@ -184,6 +202,12 @@ INLINE int cull_sixteen(const swarf_body *body, const swarf_column *c, const int
     return 0;
 }
 
+/* Lists are read in whole lanes. */
+INLINE void pad_list(int32_t *list, size_t count)
+{
+    for (int i = 0; i < COLUMN_SLACK; i++) list[count + (size_t)i] = count ? list[0] : 0;
+}
+
 /* A track that is everywhere farther than another one is anywhere does not matter; nor does, of cylinders, one whose
  * bottom is nowhere below that of another which covers the block from side to side. */
 static size_t drop_dominated(const swarf_body *body, const struct culling *state, int32_t *out, const float *bound,
@@ -199,13 +223,40 @@ static size_t drop_dominated(const swarf_body *body, const struct culling *state
             if (matters || i == state->champion) out[left++] = out[i];
         }
     }
-    for (int i = 0; i < COLUMN_SLACK; i++) out[left + (size_t)i] = left ? out[0] : 0;
+    pad_list(out, left);
     return left;
+}
+
+/* A list of one track, for all blocks at once. */
+static unsigned cull_one(const swarf_body *body, const swarf_column *c, int32_t track, const swarf_block *blocks,
+                         size_t block_count, int32_t *const *out, size_t *out_count)
+{
+    int32_t at[LANES];
+    struct block_lanes b = {all(0), all(0), all(0), blocks[0].half, blocks[0].half_z};
+    for (int k = 0; k < LANES; k++) at[k] = track;
+    for (size_t i = 0; i < block_count; i++) {
+        b.x[i] = blocks[i].x;
+        b.y[i] = blocks[i].y;
+        b.z[i] = blocks[i].z;
+    }
+    struct sixteen t = gather_tracks(c, at, body->kind == SWARF_BODY_BALL);
+    struct shaft_bounds bounds;
+    face_blocks(c, at, &b, 1, &t);
+    find_bounds(body, &t, &b, &bounds);
+    const unsigned covered = bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & ((1u << block_count) - 1);
+    const unsigned near = bits(less(bounds.least, all(SWARF_HALF_WIDTH)));
+    for (size_t i = 0; i < block_count; i++) {
+        out_count[i] = near >> i & 1;
+        out[i][0] = track;
+        pad_list(out[i], out_count[i]);
+    }
+    return covered;
 }
 
 static unsigned cull(const swarf_body *body, const swarf_column *c, const int32_t *in, size_t count,
                      const swarf_block *blocks, size_t block_count, int32_t *const *out, size_t *out_count)
 {
+    if (count == 1) return cull_one(body, c, in[0], blocks, block_count, out, out_count);
     struct culling state[BLOCKS_AT_ONCE];
     for (size_t b = 0; b < block_count; b++)
         state[b] = (struct culling){.best = all(far_away), .champion = SIZE_MAX, .champion_floor = far_away};

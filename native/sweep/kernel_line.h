@@ -37,12 +37,16 @@ INLINE lanes slant_value(const struct slant *slant, lanes height)
 }
 
 static __attribute__((noinline)) void cylinder_seam(float m, float radius, lanes s, lanes w, lanes side, float bottom,
-                                                    float length, float low, float high, lanes best[8])
+                                                    float length, float low, float high, int top_near, lanes best[8])
 {
     const struct slant slant = slant_between(w, m, radius, 1);
     const lanes at = s * m + bottom;
     for (int z = 0; z < 8; z++) {
         const lanes below = maximum(all(low - (float)z), slant_value(&slant, at - (float)z));
+        if (!top_near) {
+            best[z] = minimum(best[z], maximum(side, below));
+            continue;
+        }
         const lanes above = maximum(all((float)z - high), slant_value(&slant, all((float)z - length) - at));
         best[z] = minimum(best[z], maximum(side, maximum(below, above)));
     }
@@ -69,11 +73,11 @@ INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t
         }
         return;
     }
+    const int top_near = low + length - SWARF_HALF_WIDTH < 7; /* of a long cutter it mostly is far above */
     if (m * m * radius > STEEP && bits(less(all((radius - SEAM) * (radius - SEAM)), w2))) {
-        cylinder_seam(m, radius, s, w, side, bottom, length, low, high, best);
+        cylinder_seam(m, radius, s, w, side, bottom, length, low, high, top_near, best);
         return;
     }
-    const int top_near = low + length - SWARF_HALF_WIDTH < 7; /* of a long cutter it mostly is far above */
     const lanes chord2 = maximum(all(0), all(radius * radius) - w2), chord = root(chord2);
     const lanes scale = chord / root(chord2 + m * m * radius * radius);
     const lanes under = (s - chord) * m + bottom;

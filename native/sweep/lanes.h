@@ -254,6 +254,13 @@ INLINE lanes clamped(lanes a, lanes lo, lanes hi)
     return minimum(maximum(a, lo), hi);
 }
 
+/* |a| */
+INLINE lanes magnitude(lanes a)
+{
+    typedef int32_t words __attribute__((vector_size(64)));
+    return (lanes)((words)a & 0x7fffffff);
+}
+
 INLINE float least_lane(lanes a)
 {
     float value[LANES];
@@ -263,6 +270,34 @@ INLINE float least_lane(lanes a)
     return least;
 }
 
+/* Eight layers of 4 x 4 columns of voxels (lane = 4 * x + y) become eight pairs of columns: the eight voxels of column
+ * (x, y), then those of (x, y + 1), in the order of x and y. */
+#if defined(__AVX512F__)
+INLINE void stand_up(lanes layer[8])
+{
+    __m512 quad[2][4]; /* [half of z][y]: four voxels above each other, at each x */
+    for (int half = 0; half < 2; half++) {
+        const __m512 a = (__m512)layer[4 * half], b = (__m512)layer[4 * half + 1], c = (__m512)layer[4 * half + 2],
+                     d = (__m512)layer[4 * half + 3];
+        const __m512d ab_low = (__m512d)_mm512_unpacklo_ps(a, b), ab_high = (__m512d)_mm512_unpackhi_ps(a, b);
+        const __m512d cd_low = (__m512d)_mm512_unpacklo_ps(c, d), cd_high = (__m512d)_mm512_unpackhi_ps(c, d);
+        quad[half][0] = (__m512)_mm512_unpacklo_pd(ab_low, cd_low);
+        quad[half][1] = (__m512)_mm512_unpackhi_pd(ab_low, cd_low);
+        quad[half][2] = (__m512)_mm512_unpacklo_pd(ab_high, cd_high);
+        quad[half][3] = (__m512)_mm512_unpackhi_pd(ab_high, cd_high);
+    }
+    for (int y = 0; y < 4; y += 2) {
+        const __m512 p = quad[0][y], q = quad[1][y], r = quad[0][y + 1], s = quad[1][y + 1];
+        /* two x at a time of one column, then of its neighbour */
+        const __m512 pq_low = _mm512_shuffle_f32x4(p, q, 0x44), pq_high = _mm512_shuffle_f32x4(p, q, 0xee);
+        const __m512 rs_low = _mm512_shuffle_f32x4(r, s, 0x44), rs_high = _mm512_shuffle_f32x4(r, s, 0xee);
+        layer[y / 2] = (lanes)_mm512_shuffle_f32x4(pq_low, rs_low, 0x88);
+        layer[2 + y / 2] = (lanes)_mm512_shuffle_f32x4(pq_low, rs_low, 0xdd);
+        layer[4 + y / 2] = (lanes)_mm512_shuffle_f32x4(pq_high, rs_high, 0x88);
+        layer[6 + y / 2] = (lanes)_mm512_shuffle_f32x4(pq_high, rs_high, 0xdd);
+    }
+}
+#else
 /* Eight vectors of eight: rows become columns. */
 INLINE void transpose8(octet r[8])
 {
@@ -288,5 +323,22 @@ INLINE void transpose8(octet r[8])
         r[i + 4] = HIGH_HALVES(u[i], u[i + 4]);
     }
 }
+INLINE void stand_up(lanes layer[8])
+{
+    octet low[8], high[8];
+    for (int z = 0; z < 8; z++) {
+        low[z] = __builtin_shufflevector(layer[z], layer[z], 0, 1, 2, 3, 4, 5, 6, 7);
+        high[z] = __builtin_shufflevector(layer[z], layer[z], 8, 9, 10, 11, 12, 13, 14, 15);
+    }
+    transpose8(low);
+    transpose8(high);
+    for (int i = 0; i < 4; i++) {
+        layer[i] =
+            __builtin_shufflevector(low[2 * i], low[2 * i + 1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+        layer[4 + i] =
+            __builtin_shufflevector(high[2 * i], high[2 * i + 1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    }
+}
+#endif
 
 #endif
