@@ -263,7 +263,89 @@ static PyObject *deviation_histogram(PyObject *self, PyObject *args, PyObject *k
     return result;
 }
 
+/* What options of a deviation borrow from Python while the GIL is released. */
+typedef struct deviation_borrowed {
+    PyObject *ignore; /* bytes */
+    swarf_tool *tools;
+    size_t tool_count;
+    swarf_program *program; /* NULL: moves are not asked for */
+    program_object *reader;
+} deviation_borrowed;
+
+/* Region, ignore (one byte per triangle), program and tools as Python has them; end with borrowed_end() in any case. */
+static int borrowed_begin(module_state *state, PyObject *region, PyObject *ignore, PyObject *program, PyObject *dict,
+                          swarf_deviation_options *options, deviation_borrowed *borrowed)
+{
+    memset(borrowed, 0, sizeof *borrowed);
+    if (region != Py_None && camera_box(region, &options->region)) return -1;
+    if (ignore != Py_None) {
+        borrowed->ignore = PyBytes_FromObject(ignore);
+        if (!borrowed->ignore) return -1;
+        options->ignore = (const uint8_t *)PyBytes_AsString(borrowed->ignore);
+        options->ignore_count = (size_t)PyBytes_Size(borrowed->ignore);
+    }
+    if ((program == Py_None) != (dict == Py_None) ||
+        (program != Py_None && (!PyObject_TypeCheck(program, state->program) || !PyDict_Check(dict)))) {
+        PyErr_SetString(PyExc_TypeError, "program and tools: a Program and a dict of Cutters are wanted, or neither");
+        return -1;
+    }
+    if (program == Py_None) return 0;
+    if (tools_read(state, dict, &borrowed->tools, &borrowed->tool_count)) return -1;
+    borrowed->reader = (program_object *)program;
+    borrowed->reader->readers++;
+    borrowed->program = borrowed->reader->handle;
+    return 0;
+}
+
+static void borrowed_end(deviation_borrowed *borrowed)
+{
+    if (borrowed->reader) borrowed->reader->readers--;
+    Py_XDECREF(borrowed->ignore);
+    tools_free(borrowed->tools, borrowed->tool_count);
+}
+
+/* Takes the handle over; NULL (an exception is set) stays NULL. */
+static PyObject *deviation_wrap(module_state *state, swarf_deviation *handle)
+{
+    deviation_object *result = handle ? (deviation_object *)PyType_GenericAlloc(state->deviation, 0) : NULL;
+    if (result)
+        result->handle = handle;
+    else
+        swarf_deviation_destroy(handle);
+    return (PyObject *)result;
+}
+
+static PyObject *deviation_judge(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"excess", "gouge", "allowance", "region", "ignore", "program", "tools", "progress", NULL};
+    module_state *state = state_of(self);
+    swarf_deviation_options options = swarf_deviation_options_default();
+    PyObject *region = Py_None, *ignore = Py_None, *program = Py_None, *dict = Py_None, *progress = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|$dddOOOOO:judge", names, &options.excess_mm, &options.gouge_mm,
+                                     &options.allowance_mm, &region, &ignore, &program, &dict, &progress))
+        return NULL;
+    swarf_deviation *handle = NULL;
+    deviation_borrowed borrowed;
+    native_call call;
+    if (!borrowed_begin(state, region, ignore, program, dict, &options, &borrowed) && !call_begin(&call, progress)) {
+        swarf_status status = swarf_deviation_judge(deviation_of(self), &options, &call.progress, &handle);
+        if (!status && borrowed.program)
+            status = swarf_deviation_find_moves(handle, borrowed.program, borrowed.tools, borrowed.tool_count);
+        if (call_end(&call, state, status)) {
+            swarf_deviation_destroy(handle);
+            handle = NULL;
+        }
+    }
+    borrowed_end(&borrowed);
+    return deviation_wrap(state, handle);
+}
+
 static PyMethodDef deviation_methods[] = {
+    {"judge", WITH_KEYWORDS(deviation_judge), METH_VARARGS | METH_KEYWORDS,
+     "judge($self, *, excess=0.05, gouge=0.05, allowance=0.0, region=None, ignore=None, program=None, tools=None, "
+     "progress=None)\n--\n\n"
+     "The same measurement judged by other options, see measure_deviation(), without measuring again: fast -> "
+     "Deviation.\nStock and design may be gone; `first` stays what it was."},
     {"histogram", WITH_KEYWORDS(deviation_histogram), METH_VARARGS | METH_KEYWORDS,
      "histogram($self, lo, hi, bins=64)\n--\n\n"
      "mm2 of the surface in equal steps of the deviation from lo to hi; what is beyond counts in the outer ones."},
@@ -312,59 +394,44 @@ PyType_Spec deviation_spec = {
 
 /* ---- functions ---- */
 
-const char measure_deviation_doc[] = "measure_deviation(stock, design, *, excess=0.05, gouge=0.05, allowance=0.0, "
-                                     "region=None, first=None, program=None, "
-                                     "tools=None, progress=None)\n--\n\n"
-                                     "Hold a stock against a design Solid -> Deviation. Tolerances `excess` and "
-                                     "`gouge` in mm; `allowance` is meant to be\n"
-                                     "left; `region` is a box ((x, y, z), (x, y, z)) to stay in; `first` is the Stock "
-                                     "before the first cut, to tell where\n"
-                                     "no move went; `program` and `tools` {number: Cutter} tell the moves behind each "
-                                     "cluster. The stocks are unchanged.";
+const char measure_deviation_doc[] =
+    "measure_deviation(stock, design, *, excess=0.05, gouge=0.05, allowance=0.0, region=None, ignore=None, first=None, "
+    "program=None, tools=None, progress=None)\n--\n\n"
+    "Hold a stock against a design Solid -> Deviation. Tolerances `excess` and `gouge` in mm; `allowance` is meant to "
+    "be\nleft; `region` is a box ((x, y, z), (x, y, z)) to stay in; `ignore` has one byte for each triangle of the "
+    "design's\nmesh, not 0 where it is not to be measured; `first` is the Stock before the first cut, to tell where no "
+    "move went;\n`program` and `tools` {number: Cutter} tell the moves behind each cluster. The stocks are unchanged.";
 
 PyObject *measure_deviation(PyObject *module, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"stock", "design",  "excess", "gouge",    "allowance", "region",
-                            "first", "program", "tools",  "progress", NULL};
+    static char *names[] = {"stock",  "design", "excess",  "gouge", "allowance", "region",
+                            "ignore", "first",  "program", "tools", "progress",  NULL};
     module_state *state = PyModule_GetState(module);
     swarf_deviation_options options = swarf_deviation_options_default();
-    PyObject *stock, *design, *region = Py_None, *first = Py_None, *program = Py_None, *dict = Py_None,
-                              *progress = NULL;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!|$dddOOOOO:measure_deviation", names, state->stock, &stock,
+    PyObject *stock, *design, *region = Py_None, *ignore = Py_None, *first = Py_None, *program = Py_None,
+                              *dict = Py_None, *progress = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!|$dddOOOOOO:measure_deviation", names, state->stock, &stock,
                                      state->solid, &design, &options.excess_mm, &options.gouge_mm,
-                                     &options.allowance_mm, &region, &first, &program, &dict, &progress))
+                                     &options.allowance_mm, &region, &ignore, &first, &program, &dict, &progress))
         return NULL;
-    if (region != Py_None && camera_box(region, &options.region)) return NULL;
     if (first != Py_None && !PyObject_TypeCheck(first, state->stock))
         return PyErr_Format(PyExc_TypeError, "first: a Stock is wanted");
-    if ((program == Py_None) != (dict == Py_None) ||
-        (program != Py_None && (!PyObject_TypeCheck(program, state->program) || !PyDict_Check(dict))))
-        return PyErr_Format(PyExc_TypeError,
-                            "program and tools: a Program and a dict of Cutters are wanted, or neither");
-    swarf_tool *tools = NULL;
-    size_t tool_count = 0;
-    if (dict != Py_None && tools_read(state, dict, &tools, &tool_count)) return NULL;
     if (first != Py_None) options.first = ((stock_object *)first)->handle;
     swarf_deviation *handle = NULL;
+    deviation_borrowed borrowed;
     native_call call;
-    if (program != Py_None) ((program_object *)program)->readers++;
-    int failed = call_begin(&call, progress);
-    if (!failed) {
+    if (!borrowed_begin(state, region, ignore, program, dict, &options, &borrowed) && !call_begin(&call, progress)) {
         swarf_status status = swarf_deviation_create(((stock_object *)stock)->handle, solid_of(design), &options,
                                                      &call.progress, &handle);
-        if (!status && program != Py_None)
-            status = swarf_deviation_find_moves(handle, ((program_object *)program)->handle, tools, tool_count);
-        failed = call_end(&call, state, status);
+        if (!status && borrowed.program)
+            status = swarf_deviation_find_moves(handle, borrowed.program, borrowed.tools, borrowed.tool_count);
+        if (call_end(&call, state, status)) {
+            swarf_deviation_destroy(handle);
+            handle = NULL;
+        }
     }
-    if (program != Py_None) ((program_object *)program)->readers--;
-    tools_free(tools, tool_count);
-    deviation_object *result = failed ? NULL : (deviation_object *)PyType_GenericAlloc(state->deviation, 0);
-    if (!result) {
-        swarf_deviation_destroy(handle);
-        return NULL;
-    }
-    result->handle = handle;
-    return (PyObject *)result;
+    borrowed_end(&borrowed);
+    return deviation_wrap(state, handle);
 }
 
 const char compare_place_doc[] = "compare_place(stock, design)\n--\n\n"

@@ -793,6 +793,20 @@ class Cluster(NamedTuple):
 class Deviation:
     """The deviation of a stock from its design, see measure_deviation(). Immutable, any thread."""
 
+    def judge(
+        self,
+        *,
+        excess: float = 0.05,
+        gouge: float = 0.05,
+        allowance: float = 0.0,
+        region: Optional[Box] = None,
+        ignore: Optional[Buffer] = None,
+        program: Optional[Program] = None,
+        tools: Optional[dict[int, Cutter]] = None,
+        progress: Progress = None,
+    ) -> Deviation:
+        """The same measurement judged by other options, see measure_deviation(), without measuring again: fast -> Deviation.
+        Stock and design may be gone; `first` stays what it was."""
     def histogram(self, lo: float, hi: float, bins: int = 64) -> tuple[float, ...]:
         """mm2 of the surface in equal steps of the deviation from lo to hi; what is beyond counts in the outer ones."""
     @property
@@ -852,14 +866,16 @@ def measure_deviation(
     gouge: float = 0.05,
     allowance: float = 0.0,
     region: Optional[Box] = None,
+    ignore: Optional[Buffer] = None,
     first: Optional[Stock] = None,
     program: Optional[Program] = None,
     tools: Optional[dict[int, Cutter]] = None,
     progress: Progress = None,
 ) -> Deviation:
     """Hold a stock against a design Solid. Tolerances ``excess`` and ``gouge`` in mm; ``allowance`` is meant to be
-    left; ``region`` is a box to stay in; ``first`` is the Stock before the first cut, to tell where no move went;
-    ``program`` and ``tools`` tell the moves behind each cluster. The stocks are unchanged."""
+    left; ``region`` is a box to stay in; ``ignore`` has one byte for each triangle of the design's mesh, not 0 where it
+    is not to be measured; ``first`` is the Stock before the first cut, to tell where no move went; ``program`` and
+    ``tools`` tell the moves behind each cluster. The stocks are unchanged."""
 
 def compare_place(stock: Stock, design: Solid) -> str:
     """What makes it doubtful that a design belongs to a stock: another place, another unit; "" when all looks well."""

@@ -117,8 +117,7 @@ static uint64_t sample_key(const struct clusters *c, const swarf_sample *sample,
 static int add_cells(struct clusters *c, const swarf_samples *samples)
 {
     for (size_t i = 0; i < samples->count; i++)
-        if (samples->samples[i].beyond && table_add(&c->cells, sample_key(c, &samples->samples[i], CELL)) == UINT32_MAX)
-            return 0;
+        if (table_add(&c->cells, sample_key(c, &samples->samples[i], CELL)) == UINT32_MAX) return 0;
     return 1;
 }
 
@@ -151,7 +150,6 @@ static void add_samples(struct clusters *c, const swarf_samples *samples)
 {
     for (size_t i = 0; i < samples->count; i++) {
         const swarf_sample *sample = &samples->samples[i];
-        if (!sample->beyond) continue;
         swarf_cluster *cluster = &c->clusters[cluster_of(c, sample)];
         for (int k = 0; k < 3; k++) {
             cluster->box.lo[k] = fmin(cluster->box.lo[k], sample->xyz[k]);
@@ -190,7 +188,6 @@ static int seed_slots(struct clusters *c, const swarf_samples *samples)
 {
     for (size_t i = 0; i < samples->count; i++) {
         const swarf_sample *sample = &samples->samples[i];
-        if (!sample->beyond) continue;
         const size_t before = c->slots.count;
         const uint32_t slot = table_add(&c->slots, sample_key(c, sample, SWARF_LEAF_DIM));
         if (slot == UINT32_MAX) return 0;
@@ -257,11 +254,11 @@ static swarf_status gather(struct clusters *c, const swarf_samples *on_stock, co
     return SWARF_OK;
 }
 
-swarf_status swarf_cluster_samples(const swarf_stock *stock, const swarf_samples *on_stock,
+swarf_status swarf_cluster_samples(const swarf_tree_layout *layout, const swarf_samples *on_stock,
                                    const swarf_samples *on_design, const swarf_slot_difference *slots,
                                    swarf_cluster **out, size_t *count)
 {
-    struct clusters c = {.layout = swarf_tree_get_layout(stock->tree)};
+    struct clusters c = {.layout = layout};
     const swarf_status status = gather(&c, on_stock, on_design, slots);
     table_free(&c.cells);
     table_free(&c.slots);

@@ -14,14 +14,13 @@ typedef struct swarf_slot_difference {
 swarf_status swarf_compare_slots(const swarf_stock *stock, const swarf_solid *design, const swarf_progress *progress,
                                  double from, double to, swarf_slot_difference *slots, swarf_comparison *out);
 
-/** A point where a surface is measured. */
+/** A point that is out of tolerance. */
 typedef struct swarf_sample {
     float xyz[3];
     float value; /**< deviation, positive where material is left */
     float area;  /**< of the surface it stands for */
     uint32_t triangle;
     uint8_t kind;    /**< SWARF_POINT_ bits */
-    uint8_t beyond;  /**< out of tolerance */
     uint8_t missing; /**< on the design, with no surface of the stock near */
 } swarf_sample;
 
@@ -30,18 +29,50 @@ typedef struct swarf_samples {
     size_t count;
 } swarf_samples;
 
-/** Where the surface of an entered stock crosses the lines between neighbouring voxel centres; value, triangle and
- *  beyond are left 0. Freed with free(). */
-swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *progress, double from, double to,
-                                swarf_samples *out);
-/** Points of the design, no more than `spacing` apart, that lie deeper than `excess` in the stock or farther than
- *  `gouge` out of it; *area is that of all points tried. The stock has been entered. */
-swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double excess,
-                                 double gouge, const swarf_progress *progress, double from, double to,
-                                 swarf_samples *out, double *area);
+/** Points on the surface of a stock, in the order of its leaves. */
+typedef struct swarf_points {
+    size_t count;
+    float *xyz;      /**< 3 each */
+    float *area;     /**< of the surface each stands for */
+    float *distance; /**< from the design, positive outside */
+    uint32_t *triangle;
+    uint8_t *kind; /**< SWARF_POINT_EDGE; _UNTOUCHED where it lies on the first stock, whatever its distance */
+} swarf_points;
 
-/** Gather the samples that are beyond tolerance into clusters and share out the volumes. */
-swarf_status swarf_cluster_samples(const swarf_stock *stock, const swarf_samples *on_stock,
+/** What was measured once: a stock's surface against a design and the design's against the stock. It asks for no
+ *  tolerance; the deviations judged from it share it. Immutable. */
+typedef struct swarf_measured {
+    int references;           /* only by atomic operations */
+    swarf_tree_layout layout; /* of the stock; without its arrays, which may have changed since */
+    size_t source_count;      /* of the triangles the design was given */
+    swarf_points on_stock;
+    swarf_samples on_design; /* deeper in the stock, or farther out of it, than a voxel */
+    double design_mm2;
+    swarf_slot_difference *slots; /* one per slot of the layout */
+    swarf_comparison volumes;
+} swarf_measured;
+
+/** Measure stocks that have been entered; `first` may be NULL. The caller owns one reference. */
+swarf_status swarf_measure(const swarf_stock *stock, const swarf_solid *design, const swarf_stock *first,
+                           const swarf_progress *progress, swarf_measured **out);
+swarf_measured *swarf_measured_retain(const swarf_measured *measured);
+/** NULL is legal. */
+void swarf_measured_release(swarf_measured *measured);
+
+/** Where the surface of an entered stock crosses the lines between neighbouring voxel centres; distance and triangle
+ *  have room but no values. Freed with swarf_points_free(). */
+swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *progress, double from, double to,
+                                swarf_points *out);
+void swarf_points_free(swarf_points *points);
+/** Points of the design, no more than `spacing` apart, that lie deeper in the stock, or farther out of it, than `least`
+ *  mm; *area is that of all points tried. Values are positive in the stock and end at its band. The stock has been
+ *  entered. */
+swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double least,
+                                 const swarf_progress *progress, double from, double to, swarf_samples *out,
+                                 double *area);
+
+/** Gather the samples, all of them beyond tolerance, into clusters and share out the volumes. */
+swarf_status swarf_cluster_samples(const swarf_tree_layout *layout, const swarf_samples *on_stock,
                                    const swarf_samples *on_design, const swarf_slot_difference *slots,
                                    swarf_cluster **out, size_t *count);
 

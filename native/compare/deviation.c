@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Judging what was measured by tolerances: no point is measured again. */
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/status.h"
 #include "compare/compare.h"
 #include "solid/solid.h"
-#include "stock/leaf.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,30 +17,30 @@ static const double smooth_error = 0.02, edge_error = 0.5;
  * values next to edges are rounded, and what is thinner than this the stock's own surface shows. */
 static const double feature_error = 1;
 
-/* A point within this many voxels of the first stock's surface lies on it. */
-static const double untouched_error = 0.05;
-
-/* More points on the design than this are not tried: it is far larger than the stock, which is said elsewhere. */
-static const double most_design_points = 2e7;
-
-enum { PIECE = 1024, BINS = 1 << 16 };
+/* Points of one piece of work; bins that percentiles are found in. */
+enum { PIECE = 1 << 14, BINS = 1 << 16 };
 
 struct swarf_deviation {
+    swarf_measured *measured;
+    float *value;  /* of the points on the stock */
+    uint8_t *kind; /* of these */
     swarf_deviation_sums sums;
-    swarf_samples on_stock;
     swarf_cluster *clusters;
     size_t cluster_count;
-    /* the points as the caller sees them */
-    float *xyz, *value;
-    uint8_t *kind;
-    double voxel;
+};
+
+/* Sums over one piece of the points; added up in the order of the pieces, whatever thread made them. */
+struct piece {
+    swarf_samples beyond;
+    double area, counted, sum, squares, least, most; /* `counted` and what follows: where values are smooth */
+    double excess, gouge, not_reached;
 };
 
 struct work {
-    const swarf_solid *design;
+    const swarf_measured *measured;
+    const swarf_deviation *deviation;
     const swarf_deviation_options *options;
-    swarf_samples *samples;
-    double voxel;
+    struct piece *pieces;
 };
 
 swarf_deviation_options swarf_deviation_options_default(void)
@@ -51,81 +51,84 @@ swarf_deviation_options swarf_deviation_options_default(void)
                                      .region = {{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}}};
 }
 
-static swarf_status check_options(const swarf_deviation_options *o, const swarf_solid *design)
+static swarf_status check_options(const swarf_deviation_options *o, size_t source_count)
 {
     SWARF_REQUIRE(o->size == sizeof *o, "deviation: options of another version");
     SWARF_REQUIRE(isfinite(o->excess_mm) && o->excess_mm > 0, "deviation: a tolerance of %g mm for material left",
                   o->excess_mm);
     SWARF_REQUIRE(isfinite(o->gouge_mm) && o->gouge_mm > 0, "deviation: a tolerance of %g mm for gouges", o->gouge_mm);
     SWARF_REQUIRE(isfinite(o->allowance_mm), "deviation: the allowance is not finite");
-    SWARF_REQUIRE(!o->ignore || o->ignore_count == design->source_count,
-                  "deviation: %zu marks for the %zu triangles of the design", o->ignore_count, design->source_count);
+    SWARF_REQUIRE(!o->ignore || o->ignore_count == source_count,
+                  "deviation: %zu marks for the %zu triangles of the design", o->ignore_count, source_count);
     for (int k = 0; k < 3; k++)
         SWARF_REQUIRE(o->region.lo[k] <= o->region.hi[k], "deviation: the region is empty in %c", "xyz"[k]);
     return SWARF_OK;
 }
 
-static int is_ignored(const swarf_deviation_options *o, const swarf_sample *sample)
+static int is_ignored(const swarf_deviation_options *o, uint32_t triangle, const float xyz[3])
 {
-    if (o->ignore && o->ignore[sample->triangle]) return 1;
+    if (o->ignore && o->ignore[triangle]) return 1;
     for (int k = 0; k < 3; k++)
-        if (sample->xyz[k] < o->region.lo[k] || sample->xyz[k] > o->region.hi[k]) return 1;
+        if (xyz[k] < o->region.lo[k] || xyz[k] > o->region.hi[k]) return 1;
     return 0;
 }
 
-/* Distances from the design; points are in the order of leaves, so that one's find tells how far to look for the next.
- */
-static swarf_status measure_piece(void *context, size_t index)
+/* Kind of a point, and whether it is beyond tolerance. */
+static uint8_t judge_point(const struct work *work, size_t i, int *beyond)
 {
-    const struct work *work = context;
     const swarf_deviation_options *o = work->options;
-    const size_t end = (index + 1) * PIECE < work->samples->count ? (index + 1) * PIECE : work->samples->count;
-    swarf_solid_hit hit = {.place = SIZE_MAX};
-    for (size_t i = index * PIECE; i < end; i++) {
-        swarf_sample *sample = &work->samples->samples[i];
-        double point[3], square = 0;
-        for (int k = 0; k < 3; k++) {
-            point[k] = sample->xyz[k];
-            if (hit.place != SIZE_MAX) square += (point[k] - hit.point[k]) * (point[k] - hit.point[k]);
-        }
-        const double reach = hit.place == SIZE_MAX ? INFINITY : sqrt(square) * (1 + 1e-12) + 1e-300;
-        swarf_solid_find(work->design, point, reach, &hit);
-        if (hit.place == SIZE_MAX) swarf_solid_find(work->design, point, INFINITY, &hit);
-        const double value = hit.distance - o->allowance_mm;
-        const double error = work->voxel * (sample->kind & SWARF_POINT_EDGE ? edge_error : smooth_error);
-        sample->value = (float)value;
-        sample->triangle = work->design->source[hit.place];
-        if (is_ignored(o, sample)) sample->kind |= SWARF_POINT_IGNORED;
-        sample->beyond =
-            !(sample->kind & SWARF_POINT_IGNORED) && (value > o->excess_mm + error || value < -o->gouge_mm - error);
+    const swarf_points *points = &work->measured->on_stock;
+    const double distance = points->distance[i], value = distance - o->allowance_mm;
+    uint8_t kind = points->kind[i] & SWARF_POINT_EDGE;
+    *beyond = 0;
+    if (is_ignored(o, points->triangle[i], points->xyz + 3 * i)) return kind | SWARF_POINT_IGNORED;
+    const double error = work->measured->layout.voxel * (kind & SWARF_POINT_EDGE ? edge_error : smooth_error);
+    *beyond = value > o->excess_mm + error || value < -o->gouge_mm - error;
+    if (*beyond && points->kind[i] & SWARF_POINT_UNTOUCHED) {
+        kind |= SWARF_POINT_UNTOUCHED;
+        /* an allowance cannot be left where the stock has none */
+        if (value < 0 && distance > -o->gouge_mm) *beyond = 0;
     }
-    return SWARF_OK;
+    return kind;
 }
 
-/* Mark the points beyond tolerance that lie on the first stock. An allowance cannot be left where the stock has none.
- */
-static swarf_status mark_untouched(swarf_samples *samples, const swarf_deviation_options *o, double voxel)
+static swarf_status judge_piece(void *context, size_t index)
 {
-    size_t count = 0;
-    for (size_t i = 0; i < samples->count; i++) count += samples->samples[i].beyond;
-    double *points = malloc((3 * count + 1) * sizeof *points);
-    float *values = malloc((count + 1) * sizeof *values);
-    swarf_status status = SWARF_OK;
-    if (!points || !values) status = swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
-    size_t used = 0;
-    for (size_t i = 0; i < samples->count && status == SWARF_OK; i++)
-        for (size_t k = 0; k < 3 && samples->samples[i].beyond; k++) points[used++] = samples->samples[i].xyz[k];
-    if (status == SWARF_OK) status = swarf_stock_sample((swarf_stock *)o->first, points, count, values);
-    used = 0;
-    for (size_t i = 0; i < samples->count && status == SWARF_OK; i++) {
-        swarf_sample *sample = &samples->samples[i];
-        if (!sample->beyond || !(fabs((double)values[used++]) < untouched_error * voxel)) continue;
-        sample->kind |= SWARF_POINT_UNTOUCHED;
-        if (sample->value < 0 && sample->value + o->allowance_mm > -o->gouge_mm) sample->beyond = 0;
+    const struct work *work = context;
+    const swarf_points *points = &work->measured->on_stock;
+    const size_t end = (index + 1) * PIECE < points->count ? (index + 1) * PIECE : points->count;
+    struct piece piece = {.least = INFINITY, .most = -INFINITY};
+    size_t room = 0;
+    for (size_t i = index * PIECE; i < end; i++) {
+        int beyond;
+        const uint8_t kind = judge_point(work, i, &beyond);
+        const float value = (float)((double)points->distance[i] - work->options->allowance_mm);
+        const double own = points->area[i], square = (double)value * value;
+        work->deviation->kind[i] = kind;
+        work->deviation->value[i] = value;
+        piece.area += own;
+        if (kind == 0) {
+            piece.counted += own;
+            piece.sum += own * value;
+            piece.squares += own * square;
+            piece.least = value < piece.least ? value : piece.least;
+            piece.most = value > piece.most ? value : piece.most;
+        }
+        if (!beyond) continue;
+        *(value < 0 ? &piece.gouge : kind & SWARF_POINT_UNTOUCHED ? &piece.not_reached : &piece.excess) += own;
+        const swarf_status status = swarf_array_reserve((void **)&piece.beyond.samples, &room, piece.beyond.count + 1,
+                                                        sizeof *piece.beyond.samples);
+        if (status != SWARF_OK) {
+            free(piece.beyond.samples);
+            return status;
+        }
+        swarf_sample *sample = &piece.beyond.samples[piece.beyond.count++];
+        *sample =
+            (swarf_sample){.value = value, .area = points->area[i], .triangle = points->triangle[i], .kind = kind};
+        memcpy(sample->xyz, points->xyz + 3 * i, sizeof sample->xyz);
     }
-    free(points);
-    free(values);
-    return status;
+    work->pieces[index] = piece;
+    return SWARF_OK;
 }
 
 /* Percentiles of the area from fine bins between the least and the greatest value. */
@@ -135,11 +138,10 @@ static swarf_status find_percentiles(const swarf_deviation *d, swarf_deviation_s
     const double width = (sums->most_mm - sums->least_mm) / BINS;
     double *bins = calloc(BINS, sizeof *bins), below = 0;
     if (!bins) return swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
-    for (size_t i = 0; i < d->on_stock.count; i++) {
-        const swarf_sample *sample = &d->on_stock.samples[i];
-        if (sample->kind) continue;
-        const double at = width > 0 ? (sample->value - sums->least_mm) / width : 0;
-        bins[at < BINS - 1 ? (size_t)at : BINS - 1] += sample->area;
+    for (size_t i = 0; i < d->measured->on_stock.count; i++) {
+        if (d->kind[i]) continue;
+        const double at = width > 0 ? (d->value[i] - sums->least_mm) / width : 0;
+        bins[at < BINS - 1 ? (size_t)at : BINS - 1] += d->measured->on_stock.area[i];
     }
     int next = 0;
     for (int i = 0; i < BINS && next < 7; i++) {
@@ -151,31 +153,25 @@ static swarf_status find_percentiles(const swarf_deviation *d, swarf_deviation_s
     return SWARF_OK;
 }
 
-static swarf_status sum_up(swarf_deviation *d, double *counted)
+static swarf_status sum_up(swarf_deviation *d, const struct piece *pieces, size_t count)
 {
     swarf_deviation_sums *sums = &d->sums;
     double area = 0, sum = 0, squares = 0, least = INFINITY, most = -INFINITY;
-    sums->points = d->on_stock.count;
-    for (size_t i = 0; i < d->on_stock.count; i++) {
-        const swarf_sample *sample = &d->on_stock.samples[i];
-        const double value = sample->value, own = sample->area;
-        sums->area_mm2 += own;
-        if (sample->beyond) {
-            if (value < 0)
-                sums->gouge_mm2 += own;
-            else if (sample->kind & SWARF_POINT_UNTOUCHED)
-                sums->not_reached_mm2 += own;
-            else
-                sums->excess_mm2 += own;
-        }
-        if (sample->kind) continue;
-        area += own;
-        sum += own * value;
-        squares += own * value * value;
-        least = value < least ? value : least;
-        most = value > most ? value : most;
+    sums->points = d->measured->on_stock.count;
+    sums->design_mm2 = d->measured->design_mm2;
+    sums->volumes = d->measured->volumes;
+    sums->error_mm = smooth_error * d->measured->layout.voxel;
+    for (size_t i = 0; i < count; i++) {
+        sums->area_mm2 += pieces[i].area;
+        sums->gouge_mm2 += pieces[i].gouge;
+        sums->excess_mm2 += pieces[i].excess;
+        sums->not_reached_mm2 += pieces[i].not_reached;
+        area += pieces[i].counted;
+        sum += pieces[i].sum;
+        squares += pieces[i].squares;
+        least = fmin(least, pieces[i].least);
+        most = fmax(most, pieces[i].most);
     }
-    *counted = area;
     if (!(area > 0)) return SWARF_OK;
     sums->mean_mm = sum / area;
     sums->rms_mm = sqrt(squares / area);
@@ -184,62 +180,98 @@ static swarf_status sum_up(swarf_deviation *d, double *counted)
     return find_percentiles(d, sums, area);
 }
 
-/* Points on the design for the caller's options: deviation instead of depth, and none that is ignored. */
-static void take_design_samples(const swarf_deviation_options *o, swarf_samples *samples)
+static swarf_status join_beyond(const struct piece *pieces, size_t count, swarf_samples *out)
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < samples->count; i++)
-        if (!is_ignored(o, &samples->samples[i])) samples->samples[kept++] = samples->samples[i];
-    samples->count = kept;
-}
-
-static swarf_status show_points(swarf_deviation *d)
-{
-    const size_t count = d->on_stock.count;
-    d->xyz = malloc((3 * count + 1) * sizeof *d->xyz);
-    d->value = malloc((count + 1) * sizeof *d->value);
-    d->kind = malloc(count + 1);
-    if (!d->xyz || !d->value || !d->kind) return swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
+    swarf_samples all = {0};
+    size_t total = 0;
+    for (size_t i = 0; i < count; i++) total += pieces[i].beyond.count;
+    all.samples = malloc((total + 1) * sizeof *all.samples);
+    if (!all.samples) return swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory for %zu points", total);
     for (size_t i = 0; i < count; i++) {
-        memcpy(d->xyz + 3 * i, d->on_stock.samples[i].xyz, 3 * sizeof *d->xyz);
-        d->value[i] = d->on_stock.samples[i].value;
-        d->kind[i] = d->on_stock.samples[i].kind;
+        const swarf_samples *own = &pieces[i].beyond;
+        if (own->count) memcpy(all.samples + all.count, own->samples, own->count * sizeof *own->samples);
+        all.count += own->count;
     }
+    *out = all;
     return SWARF_OK;
 }
 
-static swarf_status measure(swarf_deviation *d, const swarf_stock *stock, const swarf_solid *design,
-                            const swarf_deviation_options *o, const swarf_progress *progress)
+/* The points on the design that these options are beyond. */
+static swarf_status take_design(const swarf_measured *measured, const swarf_deviation_options *o, swarf_samples *out)
 {
-    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
-    const double voxel = d->voxel = layout->voxel;
-    d->sums.error_mm = smooth_error * voxel;
-    SWARF_TRY(swarf_sample_stock(stock, progress, 0, 0.1, &d->on_stock));
-    struct work work = {design, o, &d->on_stock, voxel};
-    SWARF_TRY(swarf_parallel_for((d->on_stock.count + PIECE - 1) / PIECE, measure_piece, &work, progress, 0.1, 0.5));
-    if (o->first) SWARF_TRY(mark_untouched(&d->on_stock, o, voxel));
-    double counted;
-    SWARF_TRY(sum_up(d, &counted));
-    const double spacing = fmax(voxel, sqrt(design->facts.area_mm2 / most_design_points));
-    swarf_samples on_design = {0};
     /* an allowance is material that ought to be there: the design lies that deep in it */
-    const double excess = o->excess_mm + o->allowance_mm, gouge = o->gouge_mm - o->allowance_mm;
-    SWARF_TRY(swarf_sample_design(stock, design, spacing, excess + feature_error * voxel,
-                                  fmax(gouge, 0) + feature_error * voxel, progress, 0.5, 0.6, &on_design,
-                                  &d->sums.design_mm2));
-    take_design_samples(o, &on_design);
-    swarf_slot_difference *slots =
-        calloc(swarf_layout_nodes(layout) * SWARF_NODE_SLOTS, sizeof *slots); /* 8 bytes for 512 voxels */
-    swarf_status status = slots ? swarf_compare_slots(stock, design, progress, 0.6, 1, slots, &d->sums.volumes)
-                                : swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
+    const double error = feature_error * measured->layout.voxel;
+    const double excess = fmax(o->excess_mm + o->allowance_mm, 0) + error;
+    const double gouge = fmax(o->gouge_mm - o->allowance_mm, 0) + error;
+    swarf_samples taken = {0};
+    size_t room = 0;
+    for (size_t i = 0; i < measured->on_design.count; i++) {
+        const swarf_sample *sample = &measured->on_design.samples[i];
+        if (sample->value <= excess && sample->value >= -gouge) continue;
+        if (is_ignored(o, sample->triangle, sample->xyz)) continue;
+        const swarf_status status =
+            swarf_array_reserve((void **)&taken.samples, &room, taken.count + 1, sizeof *taken.samples);
+        if (status != SWARF_OK) {
+            free(taken.samples);
+            return status;
+        }
+        taken.samples[taken.count++] = *sample;
+    }
+    *out = taken;
+    return SWARF_OK;
+}
+
+static swarf_status gather(swarf_deviation *d, const struct piece *pieces, size_t count,
+                           const swarf_deviation_options *options)
+{
+    swarf_samples on_stock = {0}, on_design = {0};
+    swarf_status status = join_beyond(pieces, count, &on_stock);
+    if (status == SWARF_OK) status = take_design(d->measured, options, &on_design);
     if (status == SWARF_OK)
-        status = swarf_cluster_samples(stock, &d->on_stock, &on_design, slots, &d->clusters, &d->cluster_count);
-    free(slots);
+        status = swarf_cluster_samples(&d->measured->layout, &on_stock, &on_design, d->measured->slots, &d->clusters,
+                                       &d->cluster_count);
+    free(on_stock.samples);
     free(on_design.samples);
     d->sums.passed = 1;
     for (size_t i = 0; i < d->cluster_count; i++)
         if (!d->clusters[i].excess || d->clusters[i].reached) d->sums.passed = 0;
-    return status == SWARF_OK ? show_points(d) : status;
+    return status;
+}
+
+static swarf_status judge(swarf_deviation *d, const swarf_deviation_options *options, const swarf_progress *progress,
+                          double from)
+{
+    const size_t points = d->measured->on_stock.count, count = (points + PIECE - 1) / PIECE;
+    struct work work = {d->measured, d, options, calloc(count + 1, sizeof(struct piece))};
+    d->value = malloc((points + 1) * sizeof *d->value);
+    d->kind = malloc(points + 1);
+    swarf_status status = SWARF_OK;
+    if (!work.pieces || !d->value || !d->kind) status = swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
+    if (status == SWARF_OK) status = swarf_parallel_for(count, judge_piece, &work, progress, from, 1);
+    if (status == SWARF_OK) status = sum_up(d, work.pieces, count);
+    if (status == SWARF_OK) status = gather(d, work.pieces, count, options);
+    for (size_t i = 0; work.pieces && i < count; i++) free(work.pieces[i].beyond.samples);
+    free(work.pieces);
+    return status;
+}
+
+/* Takes one reference of `measured`. */
+static swarf_status make(swarf_measured *measured, const swarf_deviation_options *options,
+                         const swarf_progress *progress, double from, swarf_deviation **out)
+{
+    swarf_deviation *deviation = calloc(1, sizeof *deviation);
+    if (!deviation) {
+        swarf_measured_release(measured);
+        return swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
+    }
+    deviation->measured = measured;
+    const swarf_status status = judge(deviation, options, progress, from);
+    if (status != SWARF_OK) {
+        swarf_deviation_destroy(deviation);
+        return status;
+    }
+    *out = deviation;
+    return SWARF_OK;
 }
 
 swarf_status swarf_deviation_create(swarf_stock *stock, const swarf_solid *design,
@@ -249,28 +281,32 @@ swarf_status swarf_deviation_create(swarf_stock *stock, const swarf_solid *desig
     SWARF_REQUIRE(stock && design && out, "deviation: stock, design or output missing");
     const swarf_deviation_options plain = swarf_deviation_options_default();
     if (!options) options = &plain;
-    SWARF_TRY(check_options(options, design));
-    swarf_deviation *deviation = calloc(1, sizeof *deviation);
-    if (!deviation) return swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
-    swarf_status status = swarf_stock_enter_read(stock);
+    SWARF_TRY(check_options(options, design->source_count));
+    swarf_stock *first = (swarf_stock *)options->first; /* entered, not changed */
+    SWARF_TRY(swarf_stock_enter_read(stock));
+    swarf_measured *measured = NULL;
+    swarf_status status = first ? swarf_stock_enter_read(first) : SWARF_OK;
     if (status == SWARF_OK) {
-        status = measure(deviation, stock, design, options, progress);
-        swarf_stock_leave(stock);
+        status = swarf_measure(stock, design, first, progress, &measured);
+        if (first) swarf_stock_leave(first);
     }
-    if (status != SWARF_OK) {
-        swarf_deviation_destroy(deviation);
-        return status;
-    }
-    *out = deviation;
-    return SWARF_OK;
+    swarf_stock_leave(stock);
+    return status == SWARF_OK ? make(measured, options, progress, 1, out) : status;
+}
+
+swarf_status swarf_deviation_judge(const swarf_deviation *measured, const swarf_deviation_options *options,
+                                   const swarf_progress *progress, swarf_deviation **out)
+{
+    SWARF_REQUIRE(measured && options && out, "deviation: deviation, options or output missing");
+    SWARF_TRY(check_options(options, measured->measured->source_count));
+    return make(swarf_measured_retain(measured->measured), options, progress, 0, out);
 }
 
 void swarf_deviation_destroy(swarf_deviation *deviation)
 {
     if (!deviation) return;
-    free(deviation->on_stock.samples);
+    swarf_measured_release(deviation->measured);
     free(deviation->clusters);
-    free(deviation->xyz);
     free(deviation->value);
     free(deviation->kind);
     free(deviation);
@@ -290,10 +326,10 @@ const swarf_cluster *swarf_deviation_clusters(const swarf_deviation *deviation, 
 size_t swarf_deviation_points(const swarf_deviation *deviation, const float **xyz, const float **value,
                               const uint8_t **kind)
 {
-    *xyz = deviation ? deviation->xyz : NULL;
+    *xyz = deviation ? deviation->measured->on_stock.xyz : NULL;
     *value = deviation ? deviation->value : NULL;
     *kind = deviation ? deviation->kind : NULL;
-    return deviation ? deviation->on_stock.count : 0;
+    return deviation ? deviation->measured->on_stock.count : 0;
 }
 
 swarf_status swarf_deviation_histogram(const swarf_deviation *deviation, double lo, double hi, size_t bins, double *out)
@@ -301,11 +337,10 @@ swarf_status swarf_deviation_histogram(const swarf_deviation *deviation, double 
     SWARF_REQUIRE(deviation && out && bins > 0, "deviation: histogram without deviation, output or bins");
     SWARF_REQUIRE(isfinite(lo) && isfinite(hi) && lo < hi, "deviation: histogram from %g to %g mm", lo, hi);
     memset(out, 0, bins * sizeof *out);
-    for (size_t i = 0; i < deviation->on_stock.count; i++) {
-        const swarf_sample *sample = &deviation->on_stock.samples[i];
-        if (sample->kind) continue;
-        const double at = ((double)sample->value - lo) / (hi - lo) * (double)bins;
-        out[at < 0 ? 0 : at >= (double)bins ? bins - 1 : (size_t)at] += sample->area;
+    for (size_t i = 0; i < deviation->measured->on_stock.count; i++) {
+        if (deviation->kind[i]) continue;
+        const double at = ((double)deviation->value[i] - lo) / (hi - lo) * (double)bins;
+        out[at < 0 ? 0 : at >= (double)bins ? bins - 1 : (size_t)at] += deviation->measured->on_stock.area[i];
     }
     return SWARF_OK;
 }
@@ -314,6 +349,6 @@ swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, const swarf_
                                         const swarf_tool *tools, size_t tool_count)
 {
     SWARF_REQUIRE(deviation && program && (tools || tool_count == 0), "deviation: deviation, program or tools missing");
-    return swarf_find_moves(deviation->clusters, deviation->cluster_count, deviation->voxel, program, tools,
-                            tool_count);
+    return swarf_find_moves(deviation->clusters, deviation->cluster_count, deviation->measured->layout.voxel, program,
+                            tools, tool_count);
 }

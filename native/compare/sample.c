@@ -30,8 +30,10 @@ struct work {
     size_t leaf_count;
     swarf_samples *parts; /* one per piece of work */
     const swarf_solid *design;
-    double spacing, excess, gouge;
-    double *area; /* per piece */
+    double spacing, least;
+    swarf_points *points; /* where the parts go */
+    size_t *starts;       /* of each part in them */
+    double *area;         /* per piece */
 };
 
 static void load_border(const struct work *work, const swarf_leaf *leaf, float out[EDGE * EDGE * EDGE])
@@ -139,27 +141,86 @@ static swarf_status sample_leaves(void *context, size_t index)
     return SWARF_OK;
 }
 
-/* Put the parts end to end, in their order, and free them. */
-static swarf_status join_parts(swarf_samples *parts, size_t count, swarf_status status, swarf_samples *out)
+static void free_parts(swarf_samples *parts, size_t count)
+{
+    for (size_t i = 0; parts && i < count; i++) free(parts[i].samples);
+    free(parts);
+}
+
+/* Put the parts end to end, in their order. */
+static swarf_status join_parts(const swarf_samples *parts, size_t count, swarf_samples *out)
 {
     swarf_samples all = {0};
     size_t total = 0;
     for (size_t i = 0; i < count; i++) total += parts[i].count;
-    if (status == SWARF_OK && !(all.samples = malloc((total + 1) * sizeof *all.samples)))
-        status = swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory for %zu points", total);
+    all.samples = malloc((total + 1) * sizeof *all.samples);
+    if (!all.samples) return swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory for %zu points", total);
     for (size_t i = 0; i < count; i++) {
-        if (status == SWARF_OK && parts[i].count)
-            memcpy(all.samples + all.count, parts[i].samples, parts[i].count * sizeof *all.samples);
+        if (parts[i].count) memcpy(all.samples + all.count, parts[i].samples, parts[i].count * sizeof *all.samples);
         all.count += parts[i].count;
-        free(parts[i].samples);
     }
-    free(parts);
-    if (status == SWARF_OK) *out = all;
+    *out = all;
+    return SWARF_OK;
+}
+
+static swarf_status points_create(size_t count, swarf_points *out)
+{
+    swarf_points points = {.count = count,
+                           .xyz = malloc((3 * count + 1) * sizeof *points.xyz),
+                           .area = malloc((count + 1) * sizeof *points.area),
+                           .distance = malloc((count + 1) * sizeof *points.distance),
+                           .triangle = malloc((count + 1) * sizeof *points.triangle),
+                           .kind = malloc(count + 1)};
+    if (!points.xyz || !points.area || !points.distance || !points.triangle || !points.kind) {
+        swarf_points_free(&points);
+        return swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory for %zu points", count);
+    }
+    *out = points;
+    return SWARF_OK;
+}
+
+void swarf_points_free(swarf_points *points)
+{
+    free(points->xyz);
+    free(points->area);
+    free(points->distance);
+    free(points->triangle);
+    free(points->kind);
+}
+
+static swarf_status spread_part(void *context, size_t index)
+{
+    const struct work *work = context;
+    const swarf_samples *part = &work->parts[index];
+    const swarf_points *points = work->points;
+    for (size_t i = 0, at = work->starts[index]; i < part->count; i++, at++) {
+        memcpy(points->xyz + 3 * at, part->samples[i].xyz, 3 * sizeof *points->xyz);
+        points->area[at] = part->samples[i].area;
+        points->kind[at] = part->samples[i].kind;
+    }
+    return SWARF_OK;
+}
+
+static swarf_status spread_parts(struct work *work, size_t pieces, swarf_points *out)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < pieces; i++) {
+        work->starts[i] = total;
+        total += work->parts[i].count;
+    }
+    swarf_points points;
+    SWARF_TRY(points_create(total, &points));
+    work->points = &points;
+    const swarf_status status = swarf_parallel_for(pieces, spread_part, work, NULL, 0, 1);
+    if (status == SWARF_OK)
+        *out = points;
+    else
+        swarf_points_free(&points);
     return status;
 }
 
 swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *progress, double from, double to,
-                                swarf_samples *out)
+                                swarf_points *out)
 {
     struct work work = {.stock = stock, .layout = swarf_tree_get_layout(stock->tree)};
     swarf_leaf *leaves = NULL;
@@ -167,13 +228,15 @@ swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *
     work.leaves = leaves;
     const size_t pieces = (work.leaf_count + LEAVES - 1) / LEAVES;
     work.parts = calloc(pieces + 1, sizeof *work.parts);
-    if (!work.parts) {
-        free(leaves);
-        return swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory");
-    }
-    const swarf_status status = swarf_parallel_for(pieces, sample_leaves, &work, progress, from, to);
+    work.starts = malloc((pieces + 1) * sizeof *work.starts);
+    swarf_status status = SWARF_OK;
+    if (!work.parts || !work.starts) status = swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory");
+    if (status == SWARF_OK) status = swarf_parallel_for(pieces, sample_leaves, &work, progress, from, to);
+    if (status == SWARF_OK) status = spread_parts(&work, pieces, out);
+    free_parts(work.parts, pieces);
+    free(work.starts);
     free(leaves);
-    return join_parts(work.parts, pieces, status, out);
+    return status;
 }
 
 /* Trilinear, beyond the layout the background. */
@@ -199,12 +262,9 @@ static swarf_status try_point(const struct work *work, swarf_samples *found, siz
                               const double point[3], double area)
 {
     const double value = stock_value(work, point);
-    if (-value <= work->excess && value <= work->gouge) return SWARF_OK;
-    swarf_sample sample = {.value = (float)-value,
-                           .area = (float)area,
-                           .triangle = work->design->source[place],
-                           .beyond = 1,
-                           .missing = 1};
+    if (fabs(value) <= work->least) return SWARF_OK;
+    swarf_sample sample = {
+        .value = (float)-value, .area = (float)area, .triangle = work->design->source[place], .missing = 1};
     for (int k = 0; k < 3; k++) sample.xyz[k] = (float)point[k];
     return add_sample(found, room, &sample);
 }
@@ -256,17 +316,16 @@ static swarf_status sample_triangles(void *context, size_t index)
     return SWARF_OK;
 }
 
-swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double excess,
-                                 double gouge, const swarf_progress *progress, double from, double to,
-                                 swarf_samples *out, double *area)
+swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double least,
+                                 const swarf_progress *progress, double from, double to, swarf_samples *out,
+                                 double *area)
 {
     const size_t pieces = (design->tree.count + TRIANGLES - 1) / TRIANGLES;
     struct work work = {.stock = stock,
                         .layout = swarf_tree_get_layout(stock->tree),
                         .design = design,
                         .spacing = spacing,
-                        .excess = excess,
-                        .gouge = gouge};
+                        .least = least};
     work.parts = calloc(pieces + 1, sizeof *work.parts);
     work.area = calloc(pieces + 1, sizeof *work.area);
     swarf_status status = SWARF_OK;
@@ -274,8 +333,9 @@ swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *de
     if (status == SWARF_OK) status = swarf_parallel_for(pieces, sample_triangles, &work, progress, from, to);
     double total = 0;
     for (size_t i = 0; i < pieces && status == SWARF_OK; i++) total += work.area[i];
-    free(work.area);
-    status = join_parts(work.parts, work.parts ? pieces : 0, status, out);
+    if (status == SWARF_OK) status = join_parts(work.parts, pieces, out);
     if (status == SWARF_OK) *area = total;
+    free_parts(work.parts, pieces);
+    free(work.area);
     return status;
 }

@@ -72,6 +72,31 @@ def test_too_deep_and_too_high():
     assert swarf.verify(faced(0.9), DESIGN, allowance=0.1, voxel=0.25).passed
 
 
+def test_judged_again():
+    job = faced(1.03)
+    stock = swarf.Stock.box(LO, HI, 0.25)
+    stock.cut(job.tools[1], job.program)
+    measured = swarf.measure_deviation(stock, swarf.Solid(DESIGN))
+    assert measured.passed and not measured.clusters
+    del stock
+    tight = measured.judge(gouge=0.02, program=job.program, tools=job.tools)
+    (gouge,) = tight.clusters
+    assert not tight.passed and gouge.kind == "gouge" and gouge.moves
+    assert math.isclose(gouge.value, -0.03, abs_tol=0.006) and tight.points.tolist() == measured.points.tolist()
+    assert measured.judge(gouge=0.02, allowance=-0.03).passed
+    assert measured.judge(gouge=0.02, region=((0, 0, -11), (40, 30, -2))).passed
+    marks = bytearray(set(row) in ({4, 5, 7}, {4, 7, 6}) for row in DESIGN.triangles.tolist())  # the top
+    assert sum(marks) == 2 and measured.judge(gouge=0.02, ignore=marks).passed
+    with pytest.raises(ValueError, match="11 marks for the 12 triangles"):
+        measured.judge(ignore=marks[1:])
+    with pytest.raises(TypeError, match="bytes"):
+        measured.judge(ignore=object())
+    with pytest.raises(TypeError, match="Program"):
+        measured.judge(program=job.program)
+    with pytest.raises(ValueError, match="tolerance"):
+        measured.judge(excess=0)
+
+
 def test_where_no_move_went():
     design = box(LO, (40.0, 30.0, -1.0))
     job = faced(1.0)

@@ -316,6 +316,68 @@ static void check_place(void)
     shape_free(&small);
 }
 
+/* Judging again by other options gives what measuring again would; the first judgement may be gone, stock and design
+ * too. */
+static void check_judging(void)
+{
+    swarf_solid *design = design_of(4, 30);
+    job j = begin("flat:d=4,l=20", 0.2);
+    add_pocket(&j, 4.03);
+    line(&j, SWARF_MOVE_FEED, 38, 20, -4.3, 11);
+    cut(&j);
+    uint8_t ignore[4096] = {0};
+    swarf_deviation_options options[6];
+    for (int i = 0; i < 6; i++) {
+        options[i] = swarf_deviation_options_default();
+        options[i].first = j.first;
+    }
+    options[1].excess_mm = options[1].gouge_mm = 0.005;
+    options[2].allowance_mm = 0.1;
+    options[3].gouge_mm = 1;
+    options[4].region = (swarf_box){{20, 10, -10}, {37, 30, 10}};
+    options[4].gouge_mm = 0.01;
+    options[5].ignore = ignore;
+    options[5].gouge_mm = 0.01;
+    const size_t triangles = swarf_solid_get_facts(design).triangle_count;
+    for (size_t i = 0; i < triangles; i++) ignore[i] = i % 3 == 0;
+    options[5].ignore_count = triangles;
+    swarf_deviation *measured[6] = {NULL}, *judged[6] = {NULL};
+    for (int i = 0; i < 6; i++) CHECK_OK(swarf_deviation_create(j.stock, design, &options[i], NULL, &measured[i]));
+    end(&j);
+    swarf_solid_release(design);
+    for (int i = 0; i < 6; i++) {
+        options[i].first = NULL; /* is not looked at */
+        CHECK_OK(swarf_deviation_judge(measured[(i + 1) % 6], &options[i], NULL, &judged[i]));
+    }
+    swarf_deviation *none = NULL;
+    options[5].ignore_count--;
+    CHECK_FAILS(swarf_deviation_judge(measured[0], &options[5], NULL, &none), SWARF_ERROR_ARGUMENT, "marks");
+    options[5].excess_mm = NAN;
+    CHECK_FAILS(swarf_deviation_judge(measured[0], &options[5], NULL, &none), SWARF_ERROR_ARGUMENT, "material left");
+    CHECK_FAILS(swarf_deviation_judge(measured[0], NULL, NULL, &none), SWARF_ERROR_ARGUMENT, "missing");
+    int passed = 0;
+    for (int i = 0; i < 6; i++) {
+        const swarf_deviation_sums a = swarf_deviation_get_sums(measured[i]), b = swarf_deviation_get_sums(judged[i]);
+        CHECK(memcmp(&a, &b, sizeof a) == 0);
+        const float *xyz[2], *value[2];
+        const uint8_t *kind[2];
+        size_t count[2] = {swarf_deviation_points(measured[i], &xyz[0], &value[0], &kind[0]),
+                           swarf_deviation_points(judged[i], &xyz[1], &value[1], &kind[1])};
+        CHECK(count[0] == count[1] && memcmp(value[0], value[1], count[0] * sizeof(float)) == 0);
+        CHECK(memcmp(kind[0], kind[1], count[0]) == 0 && memcmp(xyz[0], xyz[1], 3 * count[0] * sizeof(float)) == 0);
+        const swarf_cluster *first = swarf_deviation_clusters(measured[i], &count[0]);
+        const swarf_cluster *second = swarf_deviation_clusters(judged[i], &count[1]);
+        CHECK(count[0] == count[1] && memcmp(first, second, count[0] * sizeof *first) == 0);
+        passed += a.passed;
+    }
+    CHECK(passed == 1); /* a tolerance of 1 mm for gouges alone */
+    for (int i = 0; i < 6; i++) {
+        swarf_deviation_destroy(measured[i]);
+        CHECK(swarf_deviation_get_sums(judged[i]).points > 0);
+        swarf_deviation_destroy(judged[i]);
+    }
+}
+
 /* Each pixel is as far from the design as the point it shows; those that show something else have no value. */
 static void check_pixels(void)
 {
@@ -351,6 +413,7 @@ int main(void)
     check_gouge_by_a_line();
     check_missing_pocket();
     check_scallops();
+    check_judging();
     check_place();
     check_pixels();
     return test_end();

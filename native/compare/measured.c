@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* What a deviation is judged from: the distances of the stock's surface from the design, the points of the design that
+ * are off the stock's surface, the volumes between both. */
+#include "base/parallel.h"
+#include "base/status.h"
+#include "compare/compare.h"
+#include "solid/solid.h"
+#include "stock/leaf.h"
+#include "stock/probe.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A point within this many voxels of the first stock's surface lies on it. */
+static const double untouched_error = 0.05;
+
+/* More points on the design than this are not tried: it is far larger than the stock, which is said elsewhere. */
+static const double most_design_points = 2e7;
+
+enum { PIECE = 1024 };
+
+struct work {
+    const swarf_solid *design;
+    const swarf_stock *first;
+    const swarf_points *points;
+    double voxel;
+};
+
+/* Points are in the order of leaves, so that one's find tells how far to look for the next. */
+static swarf_status measure_piece(void *context, size_t index)
+{
+    const struct work *work = context;
+    const swarf_points *points = work->points;
+    const size_t end = (index + 1) * PIECE < points->count ? (index + 1) * PIECE : points->count;
+    swarf_solid_hit hit = {.place = SIZE_MAX};
+    swarf_probe probe = {0};
+    if (work->first) probe = swarf_probe_begin(work->first);
+    for (size_t i = index * PIECE; i < end; i++) {
+        double point[3], at[3], square = 0;
+        for (size_t k = 0; k < 3; k++) {
+            point[k] = points->xyz[3 * i + k];
+            if (hit.place != SIZE_MAX) square += (point[k] - hit.point[k]) * (point[k] - hit.point[k]);
+        }
+        const double reach = hit.place == SIZE_MAX ? INFINITY : sqrt(square) * (1 + 1e-12) + 1e-300;
+        swarf_solid_find(work->design, point, reach, &hit);
+        if (hit.place == SIZE_MAX) swarf_solid_find(work->design, point, INFINITY, &hit);
+        points->distance[i] = (float)hit.distance;
+        points->triangle[i] = work->design->source[hit.place];
+        if (!work->first) continue;
+        for (int k = 0; k < 3; k++) at[k] = (point[k] - probe.layout->origin[k]) * probe.scale;
+        if (fabs((double)swarf_probe_point(&probe, at)) < untouched_error * work->voxel)
+            points->kind[i] |= SWARF_POINT_UNTOUCHED;
+    }
+    return SWARF_OK;
+}
+
+static swarf_status measure(swarf_measured *m, const swarf_stock *stock, const swarf_solid *design,
+                            const swarf_stock *first, const swarf_progress *progress)
+{
+    const double voxel = m->layout.voxel;
+    SWARF_TRY(swarf_sample_stock(stock, progress, 0, 0.1, &m->on_stock));
+    struct work work = {design, first, &m->on_stock, voxel};
+    SWARF_TRY(swarf_parallel_for((m->on_stock.count + PIECE - 1) / PIECE, measure_piece, &work, progress, 0.1, 0.5));
+    const double spacing = fmax(voxel, sqrt(design->facts.area_mm2 / most_design_points));
+    SWARF_TRY(swarf_sample_design(stock, design, spacing, voxel, progress, 0.5, 0.6, &m->on_design, &m->design_mm2));
+    /* 8 bytes for 512 voxels */
+    m->slots = calloc(swarf_layout_nodes(&m->layout) * SWARF_NODE_SLOTS, sizeof *m->slots);
+    if (!m->slots) return swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
+    return swarf_compare_slots(stock, design, progress, 0.6, 1, m->slots, &m->volumes);
+}
+
+swarf_status swarf_measure(const swarf_stock *stock, const swarf_solid *design, const swarf_stock *first,
+                           const swarf_progress *progress, swarf_measured **out)
+{
+    swarf_measured *measured = calloc(1, sizeof *measured);
+    if (!measured) return swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
+    measured->references = 1;
+    measured->layout = *swarf_tree_get_layout(stock->tree);
+    measured->layout.occupied = NULL;
+    measured->layout.stamps = NULL;
+    measured->source_count = design->source_count;
+    const swarf_status status = measure(measured, stock, design, first, progress);
+    if (status != SWARF_OK) {
+        swarf_measured_release(measured);
+        return status;
+    }
+    *out = measured;
+    return SWARF_OK;
+}
+
+swarf_measured *swarf_measured_retain(const swarf_measured *measured)
+{
+    swarf_measured *counted = (swarf_measured *)measured; /* only its count changes */
+    __atomic_add_fetch(&counted->references, 1, __ATOMIC_RELAXED);
+    return counted;
+}
+
+void swarf_measured_release(swarf_measured *measured)
+{
+    if (!measured || __atomic_sub_fetch(&measured->references, 1, __ATOMIC_ACQ_REL) > 0) return;
+    swarf_points_free(&measured->on_stock);
+    free(measured->on_design.samples);
+    free(measured->slots);
+    free(measured);
+}
