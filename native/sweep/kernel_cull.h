@@ -97,41 +97,77 @@ INLINE void ball_bounds(const swarf_body *body, const struct sixteen *t, const s
     bounds->floor_most = bounds->covers = all(far_away);
 }
 
-INLINE struct sixteen gather_tracks(const swarf_column *c, const int32_t *at, int ball)
+/* Which tracks are in the lanes: any sixteen, or two, one in the lanes before HALF and one in those after. */
+enum { HALF = LANES / 2 };
+struct chosen {
+    const int32_t *at;
+    int two;
+};
+
+INLINE lanes halves(lanes first, lanes second)
+{
+    const lanes number = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return pick(less(number, all(HALF)), first, second);
+}
+
+INLINE lanes chosen_field(const float *field, struct chosen chosen)
+{
+    return chosen.two ? halves(all(field[chosen.at[0]]), all(field[chosen.at[1]])) : gather(field, chosen.at);
+}
+
+INLINE int is_arc(const swarf_column *c, int32_t track)
+{
+    return (c->kind[track] & TRACK_ARC) != 0;
+}
+
+INLINE struct sixteen load_tracks(const swarf_column *c, struct chosen chosen, int ball)
 {
     float *const *f = c->field;
     struct sixteen t;
-    t.base_x = gather(f[COLUMN_X], at);
-    t.base_y = gather(f[COLUMN_Y], at);
-    t.ux = gather(f[COLUMN_UX], at);
-    t.uy = gather(f[COLUMN_UY], at);
-    t.m = gather(f[COLUMN_M], at);
-    t.im = gather(f[COLUMN_IM], at);
-    t.z = gather(f[COLUMN_Z], at);
-    t.rise = gather(f[COLUMN_RISE], at);
-    t.s0 = gather(f[COLUMN_S0], at);
-    t.s1 = gather(f[COLUMN_S1], at);
+    t.base_x = chosen_field(f[COLUMN_X], chosen);
+    t.base_y = chosen_field(f[COLUMN_Y], chosen);
+    t.ux = chosen_field(f[COLUMN_UX], chosen);
+    t.uy = chosen_field(f[COLUMN_UY], chosen);
+    t.m = chosen_field(f[COLUMN_M], chosen);
+    t.im = chosen_field(f[COLUMN_IM], chosen);
+    t.z = chosen_field(f[COLUMN_Z], chosen);
+    t.rise = chosen_field(f[COLUMN_RISE], chosen);
+    t.s0 = chosen_field(f[COLUMN_S0], chosen);
+    t.s1 = chosen_field(f[COLUMN_S1], chosen);
     t.is_arc = less(all(0), all(0));
     if (c->arcs) { /* their fields hold other things; what is left of a line's formulas must come to nothing */
         float arc[LANES];
-        for (int k = 0; k < LANES; k++) arc[k] = c->kind[at[k]] & TRACK_ARC ? 1 : 0;
+        for (int k = 0; k < LANES; k++) arc[k] = is_arc(c, chosen.at[chosen.two ? k / HALF : k]) ? 1 : 0;
         t.is_arc = less(all(0.5f), load(arc));
         t.s0 = pick(t.is_arc, all(0), t.s0);
         t.s1 = pick(t.is_arc, all(0), t.s1);
     }
     if (ball) {
-        t.dx = gather(f[COLUMN_DX], at);
-        t.dy = gather(f[COLUMN_DY], at);
-        t.dz = gather(f[COLUMN_DZ], at);
-        t.t0 = gather(f[COLUMN_T0], at);
-        t.t1 = gather(f[COLUMN_T1], at);
+        t.dx = chosen_field(f[COLUMN_DX], chosen);
+        t.dy = chosen_field(f[COLUMN_DY], chosen);
+        t.dz = chosen_field(f[COLUMN_DZ], chosen);
+        t.t0 = chosen_field(f[COLUMN_T0], chosen);
+        t.t1 = chosen_field(f[COLUMN_T1], chosen);
     }
     return t;
 }
 
-/* Place the tracks `at` (blocks: the one track) relative to the blocks. */
-INLINE void face_blocks(const swarf_column *c, const int32_t *at, const struct block_lanes *b, int one_track,
-                        struct sixteen *t)
+INLINE lanes chosen_arcs(const swarf_column *c, struct chosen chosen, const struct block_lanes *b)
+{
+    if (chosen.two) {
+        lanes side[2] = {all(0), all(0)};
+        for (int k = 0; k < 2; k++)
+            if (is_arc(c, chosen.at[k])) side[k] = arc_distance(c, chosen.at[k], b->x, b->y);
+        return halves(side[0], side[1]);
+    }
+    float plan[LANES];
+    for (int k = 0; k < LANES; k++)
+        plan[k] = is_arc(c, chosen.at[k]) ? arc_distance(c, chosen.at[k], b->x, b->y)[0] : 0;
+    return load(plan);
+}
+
+/* Place the tracks relative to the blocks. */
+INLINE void face_blocks(const swarf_column *c, struct chosen chosen, const struct block_lanes *b, struct sixteen *t)
 {
     t->x = b->x - t->base_x;
     t->y = b->y - t->base_y;
@@ -140,14 +176,7 @@ INLINE void face_blocks(const swarf_column *c, const int32_t *at, const struct b
     t->line_s = t->s;
     t->arc = all(0);
     if (!c->arcs) return;
-    if (one_track) {
-        if (c->kind[at[0]] & TRACK_ARC) t->arc = arc_distance(c, at[0], b->x, b->y);
-    } else {
-        float plan[LANES];
-        for (int k = 0; k < LANES; k++)
-            plan[k] = c->kind[at[k]] & TRACK_ARC ? arc_distance(c, at[k], b->x, b->y)[0] : 0;
-        t->arc = load(plan);
-    }
+    t->arc = chosen_arcs(c, chosen, b);
     t->line_s = pick(t->is_arc, all(0), t->s);
 }
 
@@ -165,112 +194,142 @@ INLINE void find_bounds(const swarf_body *body, const struct sixteen *t, const s
 
 /* What is known of one block while its list is made. */
 struct culling {
-    lanes best;
+    int32_t *out;
+    float *bound, *floor;
     size_t kept, champion;
-    float champion_floor;
+    float best, champion_floor;
 };
 
+/* The bounds of sixteen pairs of track and block, one by one. */
+struct spread {
+    float low[LANES], high[LANES], floor[LANES], ceiling[LANES];
+};
+
+INLINE void spread_bounds(const struct shaft_bounds *bounds, struct spread *spread)
+{
+    store(spread->low, bounds->least);
+    store(spread->high, bounds->most);
+    store(spread->floor, bounds->floor_least);
+    store(spread->ceiling, pick(less(bounds->covers, all(-SWARF_HALF_WIDTH)), bounds->floor_most, all(far_away)));
+}
+
+INLINE void keep_track(struct culling *state, int32_t track, const struct spread *spread, int lane)
+{
+    state->out[state->kept] = track;
+    state->bound[state->kept] = spread->low[lane];
+    state->floor[state->kept] = spread->floor[lane];
+    if (spread->ceiling[lane] < state->champion_floor) {
+        state->champion_floor = spread->ceiling[lane];
+        state->champion = state->kept;
+    }
+    state->kept++;
+    state->best = spread->high[lane] < state->best ? spread->high[lane] : state->best;
+}
+
 /* Look at up to sixteen tracks; 1 when one of them covers the block. */
-INLINE int cull_sixteen(const swarf_body *body, const swarf_column *c, const int32_t *at, unsigned valid,
-                        const swarf_block *b, struct sixteen *t, struct culling *state, int32_t *out, float *bound,
-                        float *floor)
+INLINE int cull_sixteen(const swarf_body *body, const swarf_column *c, struct chosen chosen, unsigned valid,
+                        const swarf_block *b, struct sixteen *t, struct culling *state)
 {
     const struct block_lanes here = {all(b->x), all(b->y), all(b->z), b->half, b->half_z};
     struct shaft_bounds bounds;
-    face_blocks(c, at, &here, 0, t);
+    struct spread spread;
+    face_blocks(c, chosen, &here, t);
     find_bounds(body, t, &here, &bounds);
     if (bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & valid) return 1;
     unsigned keep = bits(less(bounds.least, all(SWARF_HALF_WIDTH))) & valid;
     if (!keep) return 0;
-    float lows[LANES], highs[LANES], floors[LANES], ceilings[LANES];
-    store(lows, bounds.least);
-    store(highs, bounds.most);
-    store(floors, bounds.floor_least);
-    store(ceilings, pick(less(bounds.covers, all(-SWARF_HALF_WIDTH)), bounds.floor_most, all(far_away)));
+    spread_bounds(&bounds, &spread);
     for (; keep; keep &= keep - 1) {
         const int lane = __builtin_ctz(keep);
-        out[state->kept] = at[lane];
-        bound[state->kept] = lows[lane];
-        floor[state->kept] = floors[lane];
-        if (ceilings[lane] < state->champion_floor) {
-            state->champion_floor = ceilings[lane];
-            state->champion = state->kept;
-        }
-        state->kept++;
-        state->best = minimum(state->best, all(highs[lane]));
+        keep_track(state, chosen.at[lane], &spread, lane);
     }
     return 0;
 }
 
-/* Lists are read in whole lanes. */
-INLINE void pad_list(int32_t *list, size_t count)
+/* All tracks, sixteen at a time, block by block; returns which blocks are covered. */
+INLINE unsigned cull_many(const swarf_body *body, const swarf_column *c, const int32_t *in, size_t count,
+                          const swarf_block *blocks, size_t block_count, struct culling *state)
 {
-    for (int i = 0; i < COLUMN_SLACK; i++) list[count + (size_t)i] = count ? list[0] : 0;
+    unsigned covered = 0;
+    for (size_t i = 0; i < count; i += LANES) {
+        const unsigned valid = count - i >= LANES ? 0xffffu : (1u << (count - i)) - 1;
+        const struct chosen chosen = {in + i, 0};
+        struct sixteen t = load_tracks(c, chosen, body->kind == SWARF_BODY_BALL);
+        for (size_t b = 0; b < block_count; b++)
+            if (!(covered >> b & 1) && cull_sixteen(body, c, chosen, valid, &blocks[b], &t, &state[b]))
+                covered |= 1u << b;
+    }
+    return covered;
+}
+
+/* The same for few tracks: all blocks at a time, two tracks in one go. */
+INLINE unsigned cull_few(const swarf_body *body, const swarf_column *c, const int32_t *in, size_t count,
+                         const swarf_block *blocks, size_t block_count, struct culling *state)
+{
+    const unsigned present = (1u << block_count) - 1;
+    struct block_lanes here = {all(0), all(0), all(0), blocks[0].half, blocks[0].half_z};
+    unsigned covered = 0;
+    for (size_t i = 0; i < block_count; i++) {
+        here.x[i] = here.x[i + HALF] = blocks[i].x;
+        here.y[i] = here.y[i + HALF] = blocks[i].y;
+        here.z[i] = here.z[i + HALF] = blocks[i].z;
+    }
+    for (size_t i = 0; i < count; i += 2) {
+        const struct chosen chosen = {in + i, 1}; /* lists may be read beyond their end */
+        const unsigned valid = i + 1 < count ? present | present << HALF : present;
+        struct sixteen t = load_tracks(c, chosen, body->kind == SWARF_BODY_BALL);
+        struct shaft_bounds bounds;
+        struct spread spread;
+        face_blocks(c, chosen, &here, &t);
+        find_bounds(body, &t, &here, &bounds);
+        const unsigned full = bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & valid;
+        covered |= (full | full >> HALF) & present;
+        if (covered == present) break;
+        unsigned keep = bits(less(bounds.least, all(SWARF_HALF_WIDTH))) & valid & ~(covered | covered << HALF);
+        if (count == 1) { /* nothing to compare it with */
+            for (size_t b = 0; b < block_count; b++) {
+                state[b].kept = keep >> b & 1;
+                state[b].out[0] = in[0];
+            }
+            break;
+        }
+        if (keep) spread_bounds(&bounds, &spread);
+        for (; keep; keep &= keep - 1) {
+            const int lane = __builtin_ctz(keep);
+            keep_track(&state[lane % HALF], in[i + (size_t)lane / HALF], &spread, lane);
+        }
+    }
+    return covered;
 }
 
 /* A track that is everywhere farther than another one is anywhere does not matter; nor does, of cylinders, one whose
  * bottom is nowhere below that of another which covers the block from side to side. */
-static size_t drop_dominated(const swarf_body *body, const struct culling *state, int32_t *out, const float *bound,
-                             const float *floor)
+static size_t drop_dominated(const swarf_body *body, const struct culling *state)
 {
+    int32_t *out = state->out;
     size_t left = state->kept;
     if (left > 1) {
-        const float limit = least_lane(state->best);
         const int flat = body->kind == SWARF_BODY_CYLINDER;
         left = 0;
         for (size_t i = 0; i < state->kept; i++) {
-            const int matters = bound[i] <= limit && !(flat && floor[i] >= state->champion_floor);
+            const int matters = state->bound[i] <= state->best && !(flat && state->floor[i] >= state->champion_floor);
             if (matters || i == state->champion) out[left++] = out[i];
         }
     }
-    pad_list(out, left);
+    for (int i = 0; i < COLUMN_SLACK; i++) out[left + (size_t)i] = left ? out[0] : 0;
     return left;
-}
-
-/* A list of one track, for all blocks at once. */
-static unsigned cull_one(const swarf_body *body, const swarf_column *c, int32_t track, const swarf_block *blocks,
-                         size_t block_count, int32_t *const *out, size_t *out_count)
-{
-    int32_t at[LANES];
-    struct block_lanes b = {all(0), all(0), all(0), blocks[0].half, blocks[0].half_z};
-    for (int k = 0; k < LANES; k++) at[k] = track;
-    for (size_t i = 0; i < block_count; i++) {
-        b.x[i] = blocks[i].x;
-        b.y[i] = blocks[i].y;
-        b.z[i] = blocks[i].z;
-    }
-    struct sixteen t = gather_tracks(c, at, body->kind == SWARF_BODY_BALL);
-    struct shaft_bounds bounds;
-    face_blocks(c, at, &b, 1, &t);
-    find_bounds(body, &t, &b, &bounds);
-    const unsigned covered = bits(less(bounds.most, all(-SWARF_HALF_WIDTH))) & ((1u << block_count) - 1);
-    const unsigned near = bits(less(bounds.least, all(SWARF_HALF_WIDTH)));
-    for (size_t i = 0; i < block_count; i++) {
-        out_count[i] = near >> i & 1;
-        out[i][0] = track;
-        pad_list(out[i], out_count[i]);
-    }
-    return covered;
 }
 
 static unsigned cull(const swarf_body *body, const swarf_column *c, const int32_t *in, size_t count,
                      const swarf_block *blocks, size_t block_count, int32_t *const *out, size_t *out_count)
 {
-    if (count == 1) return cull_one(body, c, in[0], blocks, block_count, out, out_count);
     struct culling state[BLOCKS_AT_ONCE];
     for (size_t b = 0; b < block_count; b++)
-        state[b] = (struct culling){.best = all(far_away), .champion = SIZE_MAX, .champion_floor = far_away};
-    unsigned covered = 0;
-    for (size_t i = 0; i < count; i += LANES) {
-        const unsigned valid = count - i >= LANES ? 0xffffu : (1u << (count - i)) - 1;
-        struct sixteen t = gather_tracks(c, in + i, body->kind == SWARF_BODY_BALL);
-        for (size_t b = 0; b < block_count; b++)
-            if (!(covered >> b & 1) &&
-                cull_sixteen(body, c, in + i, valid, &blocks[b], &t, &state[b], out[b], c->bound[b], c->floor[b]))
-                covered |= 1u << b;
-    }
+        state[b] = (struct culling){out[b], c->bound[b], c->floor[b], 0, SIZE_MAX, far_away, far_away};
+    const unsigned covered = count <= block_count ? cull_few(body, c, in, count, blocks, block_count, state)
+                                                  : cull_many(body, c, in, count, blocks, block_count, state);
     for (size_t b = 0; b < block_count; b++)
-        if (!(covered >> b & 1)) out_count[b] = drop_dominated(body, &state[b], out[b], c->bound[b], c->floor[b]);
+        if (!(covered >> b & 1)) out_count[b] = drop_dominated(body, &state[b]);
     return covered;
 }
 
