@@ -60,14 +60,14 @@ def check():
     opened.accept()
     pump(0.1)
     screenshot("refused.png")
-    wait_for(lambda: opened.worker is None, "refusal of a voxel that needs too much memory")
+    wait_for(lambda: not opened.working, "refusal of a voxel that needs too much memory")
     assert opened.message.text(), "no message for a voxel that needs too much memory"
     assert not [obj for obj in document.Objects if simulation.is_simulation(obj)]
 
     opened.voxel.setValue(0.04)
     opened.accept()
     opened.reject()
-    wait_for(lambda: opened.worker is None, "cancel")
+    wait_for(lambda: not opened.working, "cancel")
     cancelled = not opened.closed
     if cancelled:  # fast machines may be done before they are asked
         assert not [obj for obj in document.Objects if simulation.is_simulation(obj)], "cancelled, but not undone"

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """FreeCAD's Path/CAM jobs, known by what they have: a job of 0.20 opened in 1.x has no Proxy any more."""
 
-from ..core import cutter, program
+from ..core import cutter, program, steps
 from ..core.errors import JobError
 from ..core.job import JobData
 from ..core.placement import Placement
 from . import accepted, holders, shapes, tools
+
+# Commands that are copied in one step: some milliseconds.
+COMMANDS_PER_STEP = 5000
 
 MARKS = ("Operations", "Tools", "Stock", "Model")
 
@@ -78,14 +81,24 @@ def _moves(commands):
                for command in commands if not program.is_comment(command.Name))
 
 
+def _plain(commands):
+    """Steps that copy Path commands -> list of core Commands."""
+    result = []
+    for begin in range(0, len(commands), COMMANDS_PER_STEP):
+        result += [program.Command(command.Name, command.Parameters)
+                   for command in commands[begin:begin + COMMANDS_PER_STEP]]
+        yield
+    return result
+
+
 def _operations(job, notes):
-    """core Operations of the active ones, and the tool controllers they use."""
+    """Steps -> core Operations of the active ones, and the tool controllers they use."""
     result, controllers = [], {}
     for obj in operations_of(job):
         if not is_active(obj):
             notes.append("The operation '%s' is not active and was left out." % obj.Label)
             continue
-        commands = obj.Path.Commands
+        commands = yield from _plain(obj.Path.Commands)
         controller = property_of(obj, "ToolController")
         if controller is None:
             if _moves(commands):
@@ -95,14 +108,15 @@ def _operations(job, notes):
             name, number, tool_commands = result[-1].controller, result[-1].tool, ()
         else:
             name, number = controller.Name, int(controller.ToolNumber)
-            tool_commands = controller.Path.Commands
+            tool_commands = yield from _plain(controller.Path.Commands)
             controllers[name] = controller
         result.append(program.Operation(obj.Label, commands, number, name, tool_commands, placement_of(obj),
                                         obj.Name))
-    return result, controllers.values()
+    return result, list(controllers.values())
 
 
 def _tools(controllers):
+    """Steps -> tool number -> (name, parts)."""
     result, owners = {}, {}
     for controller in controllers:
         number = int(controller.ToolNumber)
@@ -111,26 +125,39 @@ def _tools(controllers):
             raise JobError("the tool controllers '%s' and '%s' both have the tool number %d, with different tools"
                            % (owners[number], controller.Label, number))
         result[number], owners[number] = entry, controller.Label
+        yield
     return result
+
+
+def gather(job):
+    """Steps of a fraction of a second each, so that a GUI lives between them -> what finish() makes a JobData of. Reads
+    only; the next step must not be taken when the job is gone. JobError says what stands in the way."""
+    notes = []
+    operations, controllers = yield from _operations(job, notes)
+    if not operations:
+        raise JobError("the job '%s' has no active operation" % job.Label)
+    described = yield from _tools(controllers)
+    held = {int(controller.ToolNumber): holders.holder_of(controller) for controller in controllers}
+    held = {number: entry for number, entry in held.items() if entry}
+    teeth = {int(controller.ToolNumber): tools.teeth(controller.Tool) for controller in controllers}
+    stock = shapes.stock_of(job)
+    yield
+    design = yield from shapes.design_steps(job)
+    return JobData(job.Label, None, described, stock, design, notes, operations,
+                   {number: count for number, count in teeth.items() if count}, held, accepted.accepted_of(job))
+
+
+def finish(data):
+    """The JobData with its moves; any thread. JobError as gather()."""
+    data.moves = program.build(data.operations)
+    if not len(data.moves):
+        raise JobError("the operations of the job '%s' hold no moves: recompute it" % data.name)
+    for number, (name, parts) in data.tools.items():
+        if data.moves.feeds_with(number) and not any(kind == cutter.FLUTES for kind, _ in parts):
+            raise JobError("the tool '%s' (T%d) has no flutes and cannot cut" % (name, number))
+    return data
 
 
 def read_job(job):
     """The JobData of a job. JobError says what stands in the way. Reads only."""
-    notes = []
-    operations, controllers = _operations(job, notes)
-    if not operations:
-        raise JobError("the job '%s' has no active operation" % job.Label)
-    table = program.build(operations)
-    if not len(table):
-        raise JobError("the operations of the job '%s' hold no moves: recompute it" % job.Label)
-    controllers = list(controllers)
-    described = _tools(controllers)
-    for number, (name, parts) in described.items():
-        if table.feeds_with(number) and not any(kind == cutter.FLUTES for kind, _ in parts):
-            raise JobError("the tool '%s' (T%d) has no flutes and cannot cut" % (name, number))
-    held = {int(controller.ToolNumber): holders.holder_of(controller) for controller in controllers}
-    held = {number: entry for number, entry in held.items() if entry}
-    teeth = {int(controller.ToolNumber): tools.teeth(controller.Tool) for controller in controllers}
-    return JobData(job.Label, table, described, shapes.stock_of(job), shapes.design_of(job), notes,
-                   operations, {number: count for number, count in teeth.items() if count}, held,
-                   accepted.accepted_of(job))
+    return finish(steps.run(gather(job)))

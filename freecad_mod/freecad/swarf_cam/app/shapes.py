@@ -80,11 +80,20 @@ def stock_of(job):
     return {"kind": "mesh", "mesh": as_mesh(shape.Solids)}
 
 
-def design_of(job):
-    """The model as one mesh, None when it has no solid."""
+def mesh_steps(found, deflection_mm=DEFLECTION_MM):
+    """Steps -> as_mesh(): face by face, which leaves the triangles in the shapes, to be gathered at the end."""
+    for shape in found:
+        for face in shape.Faces:
+            face.tessellate(deflection_mm)
+            yield
+    return as_mesh(found, deflection_mm)
+
+
+def design_steps(job):
+    """Steps -> the model as one mesh, None when it has no solid."""
     solids = []
     for model in getattr(job.Model, "Group", None) or []:
         shape = getattr(model, "Shape", None)
         if shape is not None and not shape.isNull():
             solids.extend(shape.Solids)
-    return as_mesh(solids) if solids else None
+    return (yield from mesh_steps(solids)) if solids else None

@@ -14,9 +14,10 @@ import FreeCAD
 import Mesh
 
 from .. import native
+from ..core import steps
 from ..core.errors import JobError
 from . import job as jobs
-from .state import job_signature
+from .state import job_signature, signature_steps
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -161,18 +162,28 @@ def job_box(job):
 
 
 class Prepared:
-    """Everything that the simulation of an object needs, taken out of the document."""
+    """Everything that the simulation of an object needs, taken out of the document. data: as jobs.gather() gives it, or
+    a whole JobData."""
 
-    def __init__(self, job, voxel_mm):
-        if not voxel_mm > 0:
-            raise JobError("the voxel size must be greater than 0")
-        self.data = jobs.read_job(job)
-        self.voxel_mm = voxel_mm
-        self.signature = job_signature(job, voxel_mm)
+    def __init__(self, data, voxel_mm, signature):
+        self.data, self.voxel_mm, self.signature = data, voxel_mm, signature
 
     def run(self, folder, progress=None):
         """native.Result; any thread."""
+        if self.data.moves is None:
+            jobs.finish(self.data)
         return native.simulate(self.data, self.voxel_mm, folder, progress)
+
+
+def prepare_steps(job, voxel_mm, data=None, known=None):
+    """Steps -> Prepared of a job. data: its JobData where it has not changed since it was read, known: hashes of its
+    paths that are known, as state.signature_steps() takes them. JobError says what stands in the way."""
+    if not voxel_mm > 0:
+        raise JobError("the voxel size must be greater than 0")
+    signature = yield from signature_steps(job, voxel_mm, {} if known is None else known)
+    if data is None:
+        data = yield from jobs.gather(job)
+    return Prepared(data, voxel_mm, signature)
 
 
 def prepare(obj):
@@ -181,7 +192,7 @@ def prepare(obj):
         raise JobError("'%s' has no job: it was deleted, or never chosen" % obj.Label)
     if not jobs.is_job(obj.Job):
         raise JobError("'%s' is not a Path/CAM job" % obj.Job.Label)
-    return Prepared(obj.Job, obj.VoxelSize.Value)
+    return steps.run(prepare_steps(obj.Job, obj.VoxelSize.Value))
 
 
 def _give_copies_their_own_file(obj):

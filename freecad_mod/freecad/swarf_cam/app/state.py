@@ -3,19 +3,29 @@
 
 import hashlib
 
+from ..core import steps
 from ..core.signature import signature
 from . import holders
 from . import job as jobs
 from . import tools
 
 
-def _commands(path):
-    """Hash of a path's commands, to 5 decimals: a saved document keeps 6."""
+# Commands that are hashed in one step: some milliseconds.
+COMMANDS_PER_STEP = 2000
+
+
+def _commands(obj, known):
+    """Steps -> hash of an object's path, to 5 decimals: a saved document keeps 6. known: name -> hash, added to."""
+    if obj.Name in known:
+        return known[obj.Name]
     digest = hashlib.sha256()
-    for command in path.Commands:
+    for number, command in enumerate(obj.Path.Commands):
+        if number % COMMANDS_PER_STEP == 0:
+            yield
         words = ["%s%.5f" % (letter, value + 0.0) for letter, value in sorted(command.Parameters.items())]
         digest.update(("%s %s\n" % (command.Name, " ".join(words))).replace("-0.00000", "0.00000").encode())
-    return digest.hexdigest()
+    known[obj.Name] = digest.hexdigest()
+    return known[obj.Name]
 
 
 def _shape(shape):
@@ -32,6 +42,12 @@ def _shape(shape):
 
 def job_signature(job, voxel_mm):
     """Signature of everything a simulation of the job reads; None when there is no job to read."""
+    return steps.run(signature_steps(job, voxel_mm, {}))
+
+
+def signature_steps(job, voxel_mm, known):
+    """Steps -> job_signature(). known: hashes of the paths of objects that have not changed, by name; the others' are
+    added."""
     if job is None or not jobs.is_job(job):
         return None
     operations, bits = [], {}
@@ -40,9 +56,10 @@ def job_signature(job, voxel_mm):
             continue
         controller = jobs.property_of(obj, "ToolController")
         placement = jobs.placement_of(obj)
-        entry = [obj.Label, _commands(obj.Path), placement.rotation, placement.base]
+        entry = [obj.Label, (yield from _commands(obj, known)), placement.rotation, placement.base]
         if controller is not None:
-            entry += [controller.Name, int(controller.ToolNumber), _commands(controller.Path)]
+            entry += [controller.Name, int(controller.ToolNumber),
+                      (yield from _commands(controller, known))]
             tool = getattr(controller, "Tool", None)
             if tool is not None:
                 bits[controller.Name] = [tools.shape_type(tool), tools.parameters(tool),

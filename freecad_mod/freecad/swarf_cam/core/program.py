@@ -6,8 +6,10 @@ P in seconds, angles in degrees, arc centres relative to the start, R of cycles 
 operation, the number of the command in it (from 1) and the word.
 """
 
+import functools
 import math
 import re
+from collections import namedtuple
 
 from . import cycles, moves
 from .errors import JobError
@@ -35,6 +37,10 @@ WORDS = {  # the letters that a command may carry; N is a line number
 CYCLE_WORDS = "XYZRPQFLSIJKABC"
 
 
+# A command as plain data, for what cannot be read from FreeCAD's own objects any more: in another thread, or later.
+Command = namedtuple("Command", "Name Parameters")
+
+
 class Operation:
     """What the reader needs of one operation.
 
@@ -53,6 +59,7 @@ class Operation:
         self.source = source
 
 
+@functools.lru_cache(maxsize=1024)
 def canonical(name):
     """A command's name without leading zeros and in capitals: g01 -> G1, G38.20 -> G38.2."""
     match = re.fullmatch(r"\s*([A-Za-z])0*(\d+)(?:\.(\d+))?\s*", name)

@@ -10,6 +10,7 @@ from .. import native
 from ..app import simulation
 from ..core.errors import JobError
 from .qt import QtWidgets, flags
+from .slices import Slices
 from .worker import Worker
 
 translate = FreeCAD.Qt.translate
@@ -35,7 +36,7 @@ class SimulationPanel:
 
     def __init__(self, job, obj=None):
         self.job, self.obj = job, obj
-        self.worker = self.prepared = self.folder = None
+        self.reading = self.worker = self.prepared = self.folder = None
         self.closed = False
         self.form = QtWidgets.QWidget()
         self.form.setObjectName("SwarfSimulationPanel")
@@ -72,12 +73,22 @@ class SimulationPanel:
 
     def accept(self):
         """Start; the panel stays until the end."""
-        if self.worker is None:
+        if not self.working:
             self.start()
         return False
 
+    @property
+    def working(self):
+        """Whether it reads or simulates."""
+        return self.reading is not None or self.worker is not None
+
     def reject(self):
         """Cancel the work, or close the panel when there is none."""
+        if self.reading is not None:
+            self.reading.cancel()
+            self.reading = None
+            self.stop_showing_work(translate("Swarf", "Cancelled; nothing was changed."))
+            return False
         if self.worker is not None:
             self.worker.cancel()
             self.message.setText(translate("Swarf", "Cancelling ..."))
@@ -86,20 +97,32 @@ class SimulationPanel:
         return True
 
     def start(self):
-        """Read the job here, then simulate in a thread."""
-        try:
-            self.prepared = simulation.Prepared(self.job, self.voxel.value())
-        except JobError as error:
-            self.show_error(error)
-            return
-        self.folder = tempfile.TemporaryDirectory(prefix="swarf-")
+        """Read the job here, between the events, then simulate in a thread."""
         self.voxel.setEnabled(False)
         self.message.setText("")
-        self.bar.setValue(0)
+        self.bar.setRange(0, 0)
         self.bar.show()
-        prepared, folder = self.prepared, self.folder.name
+        self.reading = Slices(simulation.prepare_steps(self.job, self.voxel.value()), self.on_read, self.form)
+
+    def on_read(self, prepared, error):
+        """The job is read, or cannot be."""
+        self.reading = None
+        if error is not None:
+            self.stop_showing_work("")
+            self.show_error(error)
+            return
+        self.prepared = prepared
+        self.folder = tempfile.TemporaryDirectory(prefix="swarf-")
+        self.bar.setRange(0, 1000)
+        folder = self.folder.name
         self.worker = Worker(lambda progress: prepared.run(folder, progress), self.on_progress, self.on_end)
         self.worker.start()
+
+    def stop_showing_work(self, text):
+        """Ready to begin again."""
+        self.voxel.setEnabled(True)
+        self.bar.hide()
+        self.message.setText(text)
 
     def on_progress(self, fraction):
         """Fraction done."""
@@ -109,8 +132,7 @@ class SimulationPanel:
         """The thread is through, with a result or an error."""
         cancelled = self.worker.cancelled
         self.worker = None
-        self.voxel.setEnabled(True)
-        self.bar.hide()
+        self.stop_showing_work("")
         try:
             if error is not None and cancelled:
                 self.message.setText(translate("Swarf", "Cancelled; nothing was changed."))

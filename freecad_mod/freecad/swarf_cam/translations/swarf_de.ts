@@ -379,6 +379,10 @@
             <translation>Auftrag neu lesen</translation>
         </message>
         <message>
+            <source>Reading '{0}' ...</source>
+            <translation>'{0}' wird gelesen ...</translation>
+        </message>
+        <message>
             <source>Removed</source>
             <translation>Abgetragen</translation>
         </message>
@@ -477,6 +481,10 @@
         <message>
             <source>The document was closed.</source>
             <translation>Das Dokument wurde geschlossen.</translation>
+        </message>
+        <message>
+            <source>The job cannot be read: {0}</source>
+            <translation>Der Job kann nicht gelesen werden: {0}</translation>
         </message>
         <message>
             <source>The job is gone: its result cannot be kept.</source>

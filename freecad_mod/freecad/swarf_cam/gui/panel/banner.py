@@ -66,7 +66,7 @@ class Banner(QtWidgets.QFrame):
     def say(self, kind, text, action=None, act=None):
         """A message of kind "error", "warning" or "note"; action: text of a button that calls act."""
         self.setStyleSheet("#SwarfBanner { border-radius: 5px; %s } #SwarfMessage { %s } #SwarfBanner QToolButton { %s }"
-                           % (STYLES[kind], STYLES[kind], STYLES[kind]))
+                           % ((STYLES[kind],) * 3))
         self.text.setText(text)
         self.bar.hide()
         self.close_button.show()
@@ -77,10 +77,11 @@ class Banner(QtWidgets.QFrame):
         self.show()
         self.raise_()
 
-    def work(self, text, cancel):
-        """Work that goes on, with a button to end it."""
+    def work(self, text, cancel, measured=True):
+        """Work that goes on, with a button to end it; measured: how far it is will be told by progress()."""
         self.say("note", text, translate("Swarf", "Cancel"), cancel)
         self.close_button.hide()
+        self.bar.setRange(0, 1000 if measured else 0)
         self.bar.setValue(0)
         self.bar.show()
         self._place()

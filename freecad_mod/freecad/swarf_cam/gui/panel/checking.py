@@ -8,7 +8,7 @@ from ... import checks
 from ...core import findings as model
 from ...core.transport import STOP_FINDING
 from .. import colours, settings
-from ..qt import QtCore, QtGui
+from ..qt import QtCore
 from ..worker import Worker
 
 translate = FreeCAD.Qt.translate
@@ -16,6 +16,9 @@ translate = FreeCAD.Qt.translate
 
 # Milliseconds without another tolerance before it is checked with the new one.
 QUIET_MS = 700
+
+# Milliseconds after opening at which checks begin at the latest.
+FIRST_MS = 5000
 
 # Worst places that are shown as pins.
 PINS = 8
@@ -35,17 +38,32 @@ class Checking:
         self._later.setSingleShot(True)
         self._later.setInterval(QUIET_MS)
         self._later.timeout.connect(self.start)
+        self._first = QtCore.QTimer(panel)
+        self._first.setSingleShot(True)
+        self._first.setInterval(FIRST_MS)
+        self._first.timeout.connect(self.start)
 
     @property
     def running(self):
         """Whether checks go on."""
         return self._worker is not None
 
+    @property
+    def pending(self):
+        """Whether checks go on or will begin by themselves."""
+        return self.running or self._first.isActive() or self._later.isActive()
+
     def open(self, session):
         """A job was opened: what its simulation noticed; the rest follows."""
         self._panel.findings.show_checked("")
         self._show(model.from_overview(session.overview.findings, session.listing))
         if settings.flag("AutoCheck"):
+            self._first.start()
+
+    def picture_came(self, frame):
+        """Checks begin by themselves once the first good picture is there: it comes sooner without them."""
+        if frame.sharp and self._first.isActive():
+            self._first.stop()
             self.start()
 
     def start_soon(self):
@@ -56,6 +74,7 @@ class Checking:
     def close_job(self):
         """Nothing is watched any more."""
         self._later.stop()
+        self._first.stop()
         self.cancel()
         self._old += [self._worker] if self._worker is not None else []
         self._worker, self.found = None, []
@@ -69,6 +88,7 @@ class Checking:
         panel, session = self._panel, self._panel.session
         if session is None:
             return
+        self._first.stop()
         if self._worker is not None:
             self.cancel()
             self._old.append(self._worker)
@@ -134,7 +154,7 @@ class Checking:
         text += " …" if self.running else " (%d)" % serious if serious else ""
         tabs.setTabText(tabs.indexOf(page), text)
         worst = next((severity for severity in model.SEVERITIES if count[severity]), None)
-        tabs.setTabIcon(tabs.indexOf(page), page.icon(worst) if worst else QtGui.QIcon())
+        tabs.setTabIcon(tabs.indexOf(page), page.icon(worst))
 
     def _go_to(self, finding):
         """Stand where it happens and look at it."""
@@ -142,8 +162,8 @@ class Checking:
         if panel.session is None:
             return
         if finding.place is not None:
-            panel.seek(finding.place, finding.line if finding.line >= 0 else None)
-        panel.view.mark = finding.point
+            panel.player.seek(finding.place, finding.line if finding.line >= 0 else None, finding.point)
+        else:
+            panel.view.set_mark(finding.point)
         if finding.point is not None:
             panel.view.fly_to(finding.point)
-        panel.view.update()

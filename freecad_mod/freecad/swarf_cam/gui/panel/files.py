@@ -28,7 +28,7 @@ class Files:
         if panel.job is None or panel.session is None:
             panel.fail(JobError(translate("Swarf", "The job is gone: its result cannot be kept.")))
             return
-        self.keeper.start(panel.job, panel.session.voxel_mm)
+        self.keeper.start(panel.job, panel.session, panel.opening.known_hashes)
 
     def ask_picture(self):
         """Save the picture where the user says."""
@@ -42,8 +42,8 @@ class Files:
         if panel.session is None:
             return
         view, place = panel.current_view(), panel.transport.at
-        panel.banner.work(translate("Swarf", "Drawing ..."), panel.cancel_call)
-        panel.call(lambda session, progress: session.write_png(path, view, place, progress),
+        panel.banner.work(translate("Swarf", "Drawing ..."), panel.opening.cancel_call)
+        panel.opening.call(lambda session, progress: session.write_png(path, view, place, progress),
                    lambda _, error: self._written(path, error))
 
     def ask_animation(self):
@@ -57,12 +57,13 @@ class Files:
         panel = self._panel
         if panel.session is None:
             return
-        panel.seek(panel.transport.at)
+        panel.player.seek(panel.transport.at)
         view, report = panel.current_view(size), export.Report(panel)
         report.came.connect(panel.banner.progress, QtCore.Qt.QueuedConnection)
-        panel.banner.work(translate("Swarf", "Drawing the animation ..."), panel.cancel_call)
-        panel.call(lambda session, progress: export.write_animation(session, progress, folder, view, count, report),
-                   self._written)
+        panel.banner.work(translate("Swarf", "Drawing the animation ..."), panel.opening.cancel_call)
+        panel.opening.call(
+            lambda session, progress: export.write_animation(session, progress, folder, view, count, report),
+            self._written)
 
     def _written(self, path, error):
         panel = self._panel

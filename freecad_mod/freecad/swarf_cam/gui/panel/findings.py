@@ -5,7 +5,7 @@ import FreeCAD
 
 from ...core import findings as model
 from .. import icons
-from ..qt import QtCore, QtWidgets
+from ..qt import QtCore, QtGui, QtWidgets
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -35,6 +35,9 @@ class FindingList(QtWidgets.QWidget):
         row = QtWidgets.QHBoxLayout()
         row.setContentsMargins(4, 0, 4, 0)
         self._icons = {severity: icons.icon("finding-" + severity, self.palette()) for severity in model.SEVERITIES}
+        blank = QtGui.QPixmap(16, 16)
+        blank.fill(QtCore.Qt.transparent)
+        self._icons[None] = QtGui.QIcon(blank)
         self.filters = {}
         for severity in model.SEVERITIES:
             button = QtWidgets.QToolButton()
@@ -71,14 +74,15 @@ class FindingList(QtWidgets.QWidget):
         header = self.tree.header()
         header.setStretchLastSection(False)
         header.setSectionResizeMode(0, QtWidgets.QHeaderView.Stretch)
-        self.tree.itemClicked.connect(lambda item, _: self.chosen.emit(self._shown[self.tree.indexOfTopLevelItem(item)]))
+        self.tree.itemClicked.connect(
+            lambda item, _: self.chosen.emit(self._shown[self.tree.indexOfTopLevelItem(item)]))
         column.addWidget(self.tree, 1)
         self._shown = []
         self.show_findings((), {}, None)
         self.show_checked("")
 
     def icon(self, severity):
-        """The sign of a severity."""
+        """The sign of a severity; of None a blank one as large, so that a tab keeps its height."""
         return self._icons[severity]
 
     def show_findings(self, findings, numbers, listing):

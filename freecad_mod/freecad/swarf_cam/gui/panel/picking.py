@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A click on the stock: asks the engine what made the point, and shows the answer in the lists and in FreeCAD's tree."""
+"""A click on the stock: asks the engine what made the point, and shows the answer in the lists and in FreeCAD's
+tree."""
 
 import FreeCAD
 import FreeCADGui as Gui
@@ -27,7 +28,7 @@ class Picking:
         if panel.session is None or panel.view.camera is None:
             return
         view, place, asked = panel.current_view(), panel.transport.at, panel.session
-        panel.call(lambda session, progress: session.pick(view, x, y, place),
+        panel.opening.call(lambda session, progress: session.pick(view, x, y, place),
                    lambda found, error: self._answered(asked, found, error))
 
     def _answered(self, asked, found, error):
@@ -38,8 +39,7 @@ class Picking:
             panel.fail(error)
             return
         self.found = found
-        panel.view.mark = found.point if found else None
-        panel.view.update()
+        panel.view.set_mark(found.point if found else None)
         if found is None:
             panel.inspector.show_values(None)
             return

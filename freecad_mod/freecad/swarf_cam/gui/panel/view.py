@@ -53,7 +53,7 @@ class PictureView(QtWidgets.QWidget):
         self.box = None
         self.camera = None
         self.frame = None
-        self.mark = None  # point that was clicked
+        self.mark = None  # point that was clicked, or where a finding is
         self.caption = ("", "", None)
         self.pins = []  # (point, text, colour) of places; shown with the legend
         self.legend = None  # core Legend of the deviations that are shown
@@ -77,8 +77,14 @@ class PictureView(QtWidgets.QWidget):
 
     def close_job(self):
         """Keep the last picture, steer no more."""
-        self.camera = None
+        self.camera = self.mark = None
+        self.caption, self.pins = ("", "", None), []
         self._timer.stop()
+        self.update()
+
+    def set_mark(self, point):
+        """Mark a point, None: none."""
+        self.mark = point
         self.update()
 
     def aspect(self):

@@ -3,8 +3,9 @@
 
 import FreeCAD
 
-from ...app.state import job_signature
+from ...app.state import signature_steps
 from ..qt import QtCore
+from ..slices import Slices
 
 # Milliseconds of quiet after a change before the job's signature is compared: recomputes change many objects.
 QUIET_MS = 400
@@ -12,7 +13,7 @@ QUIET_MS = 400
 
 class JobWatch(QtCore.QObject):
     """Document observer of one job. Signals: changed (it differs from what was read, or again not), deleted, closed
-    (its document)."""
+    (its document). differs: what changed told last. known: hashes of the paths that have not changed since."""
 
     changed = QtCore.Signal(bool)
     deleted = QtCore.Signal()
@@ -20,9 +21,10 @@ class JobWatch(QtCore.QObject):
 
     def __init__(self, job, parent=None):
         super().__init__(parent)
-        self._job, self._document = job, job.Document
+        self._job = job
         self._name, self._document_name = job.Name, job.Document.Name
-        self._signature = job_signature(job, 1.0)
+        self._signature = self._slices = None
+        self.differs, self.known = False, {}
         self._timer = QtCore.QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(QUIET_MS)
@@ -35,25 +37,37 @@ class JobWatch(QtCore.QObject):
         if self._observer is not None:
             FreeCAD.removeDocumentObserver(self._observer)
             self._observer = None
-        self._timer.stop()
+        self._stop_comparing()
 
     @property
     def job(self):
         """The job, None once it is gone."""
         return self._job
 
+    def remember_steps(self):
+        """Steps after which changes are told from how the job is now."""
+        self._signature = yield from signature_steps(self._job, 1.0, self.known)
+
+    def _stop_comparing(self):
+        self._timer.stop()
+        if self._slices is not None:
+            self._slices.cancel()
+            self._slices = None
+
     def _compare(self):
-        if self._job is None:
-            return
-        try:
-            same = job_signature(self._job, 1.0) == self._signature
-        except (ReferenceError, RuntimeError, AttributeError, ValueError):
-            same = False  # half way through an edit
-        self.changed.emit(not same)
+        self._slices = Slices(signature_steps(self._job, 1.0, self.known), self._compared, self)
+
+    def _compared(self, signature, error):
+        """An error: half way through an edit."""
+        self._slices = None
+        self.differs = error is not None or signature != self._signature
+        self.changed.emit(self.differs)
 
     def on_changed(self, obj):
         """Something in some document."""
         if self._job is not None and obj.Document.Name == self._document_name:
+            self.known.pop(obj.Name, None)
+            self._stop_comparing()
             self._timer.start()
 
     def on_deleted(self, obj):
@@ -61,18 +75,20 @@ class JobWatch(QtCore.QObject):
         if self._job is None or obj.Document.Name != self._document_name:
             return
         if obj.Name == self._name:
-            self._job = None
-            self._timer.stop()
+            self._lose_job()
             self.deleted.emit()
         else:
-            self._timer.start()
+            self.on_changed(obj)
 
     def on_closed(self, document):
         """A document goes."""
         if document.Name == self._document_name:
-            self._job = None
-            self._timer.stop()
+            self._lose_job()
             self.closed.emit()
+
+    def _lose_job(self):
+        self._job = None
+        self._stop_comparing()
 
 
 class _Observer:

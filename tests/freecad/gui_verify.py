@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Verification in the live panel (see run): findings, deviations."""
+
+import os
+import sys
+
+import FreeCAD
+import FreeCADGui as Gui
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
+
+from gui_support import OUT, QtCore, QtWidgets, pump, screenshot, start, wait_for  # noqa: E402
+from PySide import QtGui  # noqa: E402
+from panel_support import PanelTest, click, differing, drag, key, mouse, new_job  # noqa: E402
+
+
+class Verifying(PanelTest):
+    """The checks in the order of a user."""
+
+    def findings(self):
+        """What the checks found: list, marks, going there, leaving out, breaking off."""
+        panel, tree = self.panel, self.panel.findings.tree
+        page = panel.tabs.indexOf(panel.findings)
+        panel.tabs.setCurrentIndex(page)
+        found = panel.checking.found
+        listing = panel.session.listing
+        assert tree.topLevelItemCount() == len(found) > 0
+        assert panel.tabs.tabText(page) == "Findings (%d)" % sum(item.severity != "note" for item in found)
+        index = next(index for index, item in enumerate(found)
+                     if item.kind == "gouge" and listing.operations[item.operation].name == "Wave")
+        assert tree.topLevelItem(index).text(1) == "Wave"
+        assert {"gouge", "excess"} <= {item.kind for item in found}, [item.text for item in found]
+        pump(0.2)
+        place = tree.visualItemRect(tree.topLevelItem(index)).center()
+        click(tree.viewport(), place.x(), place.y())
+        pump(0.5)
+        self.settle(found[index].place)
+        view = panel.view
+        x, y, _ = view.camera.project(found[index].point, view.aspect())
+        assert max(abs(x), abs(y)) < 1e-6 and view.mark == found[index].point
+        assert view.camera.height < 0.35 * sum((b - a) ** 2 for a, b in zip(*view.box)) ** 0.5
+        screenshot("panel-findings.png")
+        errors = panel.findings.filters["error"]
+        errors.click()
+        assert [tree.topLevelItem(row).isHidden() for row in range(len(found))] == \
+            [item.severity == "error" for item in found]
+        errors.click()
+        assert not any(tree.topLevelItem(row).isHidden() for row in range(len(found)))
+        panel.bar._stops["finding"].setChecked(True)
+        panel.player.seek(0)
+        panel.player.set_speed(0.0)
+        self.button("play")
+        wait_for(lambda: not panel.transport.playing, "the stop at a finding")
+        self.settle(min(item.place for item in found if item.place))
+        panel.bar._stops["finding"].setChecked(False)
+        panel.findings.run.click()
+        panel.findings.run.click()
+        wait_for(lambda: not panel.checking.running, "breaking off the checks")
+        assert "ancelled" in panel.findings.state.text() or panel.checking.found == found  # too fast to be stopped
+        assert panel.checking.found == found, "cancelling keeps what was known"
+        panel.findings.run.click()
+        assert panel.tabs.tabText(page).endswith("…")
+        wait_for(lambda: not panel.checking.running, "checking again")
+        assert panel.checking.found == found
+        key(view, QtCore.Qt.Key_0, "0")
+        pump(0.5)
+
+    def deviation(self):
+        """Colours, legend, value under the mouse, pins, another tolerance."""
+        panel, view = self.panel, self.panel.view
+        panel.player.seek(panel.transport.end)
+        key(view, QtCore.Qt.Key_2, "2")
+        pump(0.5)
+        self.settle()
+        assert panel.tools.tolerance.isHidden()
+        panel.tools.set_colouring("deviation")
+        self.redrawn()
+        assert panel.tools.tolerance.isVisible()
+
+        def pixel(point):
+            x, y, _ = view.camera.project(point, view.aspect())
+            return (x + 1) / 2 * view.width(), (1 - y) / 2 * view.height()
+
+        def colour(point):
+            image, (x, y) = view.image(), pixel(point)
+            return image.pixelColor(int(x * image.width() / view.width()), int(y * image.height() / view.height()))
+
+        # the wave is missing, the pocket not deep enough, the top right
+        floor, top, wave = (30, 28, -5), (70, 20, -1), (54, 25, -3)
+        expected = {floor: 0.2, top: 0.0, wave: -2.0}
+        for point, value in expected.items():
+            assert abs(view.value_under(*pixel(point)) - value) < 0.01, (point, view.value_under(*pixel(point)))
+        red, green, blue = colour(floor), colour(top), colour(wave)
+        assert red.red() > 2 * red.blue() and blue.blue() > 2 * blue.red() and green.green() > green.red(), \
+            (red.getRgb(), green.getRgb(), blue.getRgb())
+        mouse(view, "move", *pixel(floor))
+        assert abs(view.hover - 0.2) < 0.01
+        panel.tabs.setCurrentWidget(panel.findings)
+        assert len(view.pins) == len(panel.checking.found) == 3
+        numbered = [panel.findings.tree.topLevelItem(row).text(0)[0] for row in range(3)]
+        assert sorted(numbered) == ["①", "②", "③"]
+        screenshot("panel-deviation.png")
+        path = os.path.join(OUT, "deviation.png")
+        panel.files.save_picture(path)
+        wait_for(lambda: not panel.banner.working, "writing the picture")
+        saved = QtGui.QImage(path).convertToFormat(view.image().format())
+        assert differing(saved, view.image()) < 0.01, "the file has the colours too"
+        panel.banner.done()
+        panel.picking.found = None
+        click(view, *pixel(floor))
+        wait_for(lambda: panel.picking.found is not None, "the answer to a click")
+        assert panel.findChild(QtWidgets.QLabel, "SwarfPoint-deviation").text() == "+0.200 mm"
+        panel.tools.tolerance.setValue(0.3)
+        self.redrawn()
+        wide = colour(floor)
+        assert wide.green() >= wide.red(), "with a wider tolerance the pocket is well"
+        wait_for(lambda: panel.checking.running, "checks with another tolerance")
+        wait_for(lambda: not panel.checking.running, "the end of the checks")
+        assert not [item for item in panel.checking.found if abs(abs(item.amount) - 0.2) < 0.01]
+        application = QtWidgets.QApplication.instance()
+        style = application.styleSheet()
+        application.setStyleSheet("QWidget { background-color: #35393e; color: #f0f0f0 }")
+        key(view, QtCore.Qt.Key_0, "0")
+        pump(0.5)
+        drag(view, QtCore.Qt.LeftButton, (120, 150), (180, 170))
+        screenshot("panel-deviation-moving.png")
+        self.settle()
+        mouse(view, "move", *pixel(wave))
+        screenshot("panel-deviation-dark.png")
+        mouse(view, "move", 3, 3)
+        assert view.hover is None, "there is no deviation beside the part"
+        application.setStyleSheet(style)
+        panel.tools.open(False)
+        assert panel.tools.colouring == "material" and view.legend is None, "without a model"
+        panel.tools.open(True)
+        panel.tools.tolerance.setValue(self.settings.TOLERANCE_MM)
+        wait_for(lambda: panel.checking.running, "checks with the first tolerance")
+        wait_for(lambda: not panel.checking.running, "the end of the checks")
+        self.settle()
+        key(view, QtCore.Qt.Key_0, "0")
+        pump(0.5)
+
+
+def check():
+    """All of it."""
+    test = Verifying()
+    document, job = new_job("verify")
+    test.run((test.open, document, job), (test.findings,), (test.deviation,))
+
+
+start(check)
