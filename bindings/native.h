@@ -138,6 +138,9 @@ typedef struct stock_object {
 } stock_object;
 extern PyType_Spec stock_spec;
 
+/** End a call that makes a stock: a Stock of this type, or NULL with an exception and the handle destroyed. */
+PyObject *stock_wrap(PyTypeObject *type, native_call *call, swarf_status status, swarf_stock *handle);
+
 /** ((x, y, z), (x, y, z)), or None when the box is empty. */
 PyObject *box_to_python(const swarf_box *box);
 
@@ -188,8 +191,20 @@ extern PyStructSequence_Desc pick_desc;
 typedef struct surface_object {
     PyObject_HEAD swarf_surface *handle;
     program_object *program; /* kept from growing */
+    PyObject *before;        /* Surface of the set-up before, whose program is kept from growing too; NULL: none */
 } surface_object;
 extern PyType_Spec surface_spec;
+/** A Surface that takes over a handle (NULL with an exception: gives up the rest) and a reference to its program, whose
+ *  `exports` were raised; `before` may be NULL. */
+PyObject *surface_wrap(PyTypeObject *type, swarf_surface *handle, program_object *program, PyObject *before);
+
+/* ---- placement.c: methods of Stock, Surface and Mesh ---- */
+
+extern const char stock_placed_doc[], surface_next_doc[], mesh_origins_doc[], mesh_placed_doc[];
+PyObject *stock_placed(PyObject *self, PyObject *args, PyObject *keywords);
+PyObject *surface_next(PyObject *self, PyObject *args, PyObject *keywords);
+PyObject *mesh_placed(PyObject *self, PyObject *placement);
+PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords);
 
 /* ---- mesh.c ---- */
 

@@ -14,8 +14,7 @@ PyObject *box_to_python(const swarf_box *box)
     return Py_BuildValue("((ddd)(ddd))", box->lo[0], box->lo[1], box->lo[2], box->hi[0], box->hi[1], box->hi[2]);
 }
 
-/** End a call that makes a stock. */
-static PyObject *stock_finish(PyTypeObject *type, native_call *call, swarf_status status, swarf_stock *handle)
+PyObject *stock_wrap(PyTypeObject *type, native_call *call, swarf_status status, swarf_stock *handle)
 {
     stock_object *self = NULL;
     if (call_end(call, state_of_type(type), status) == 0) self = (stock_object *)PyType_GenericAlloc(type, 0);
@@ -64,7 +63,7 @@ static PyObject *stock_box(PyObject *type, PyObject *args, PyObject *keywords)
     swarf_stock *handle = NULL;
     call_begin(&call, NULL);
     const swarf_status status = swarf_stock_create_box(&box, &options, &handle);
-    return stock_finish((PyTypeObject *)type, &call, status, handle);
+    return stock_wrap((PyTypeObject *)type, &call, status, handle);
 }
 
 static PyObject *stock_cylinder(PyObject *type, PyObject *args, PyObject *keywords)
@@ -83,7 +82,7 @@ static PyObject *stock_cylinder(PyObject *type, PyObject *args, PyObject *keywor
     swarf_stock *handle = NULL;
     call_begin(&call, NULL);
     const swarf_status status = swarf_stock_create_cylinder(base, axis, radius, &options, &handle);
-    return stock_finish((PyTypeObject *)type, &call, status, handle);
+    return stock_wrap((PyTypeObject *)type, &call, status, handle);
 }
 
 static PyObject *stock_from_mesh(PyObject *type, PyObject *args, PyObject *keywords)
@@ -102,7 +101,7 @@ static PyObject *stock_from_mesh(PyObject *type, PyObject *args, PyObject *keywo
     const swarf_triangles triangles = swarf_mesh_triangles(((mesh_object *)mesh)->handle);
     swarf_stock *handle = NULL;
     const swarf_status status = swarf_stock_create_mesh(&triangles, &options, &call.progress, &handle);
-    return stock_finish((PyTypeObject *)type, &call, status, handle);
+    return stock_wrap((PyTypeObject *)type, &call, status, handle);
 }
 
 static PyObject *stock_read(PyObject *type, PyObject *args, PyObject *keywords)
@@ -115,7 +114,7 @@ static PyObject *stock_read(PyObject *type, PyObject *args, PyObject *keywords)
     if (!call_begin(&call, progress)) {
         swarf_stock *handle = NULL;
         const swarf_status status = swarf_stock_read(PyBytes_AsString(path), &call.progress, &handle);
-        result = stock_finish((PyTypeObject *)type, &call, status, handle);
+        result = stock_wrap((PyTypeObject *)type, &call, status, handle);
     }
     Py_DECREF(path);
     return result;
@@ -141,7 +140,7 @@ static PyObject *stock_copy(PyObject *self, PyObject *Py_UNUSED(none))
     swarf_stock *handle = NULL;
     call_begin(&call, NULL);
     const swarf_status status = swarf_stock_copy(handle_of(self), &handle);
-    return stock_finish(Py_TYPE(self), &call, status, handle);
+    return stock_wrap(Py_TYPE(self), &call, status, handle);
 }
 
 static swarf_status write_to(void *stock, const char *path, const swarf_progress *progress)
@@ -317,6 +316,7 @@ static PyMethodDef stock_methods[] = {
      "From the first level set of a .vdb file, with its voxel size. OSError, FormatError."},
     {"estimate", WITH_KEYWORDS(stock_estimate), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
      "estimate($type, lo, hi, voxel)\n--\n\nBytes that a stock filling this box may need while it is cut."},
+    {"placed", WITH_KEYWORDS(stock_placed), METH_VARARGS | METH_KEYWORDS, stock_placed_doc},
     {"write", WITH_KEYWORDS(stock_write), METH_VARARGS | METH_KEYWORDS,
      "write($self, path, *, progress=None)\n--\n\n"
      "To a .vdb file; beside the target and renamed, so a failure loses nothing."},

@@ -2,6 +2,21 @@
 /* swarf.Surface: the exact surface of a stock and a program. Immutable, any thread. */
 #include "native.h"
 
+PyObject *surface_wrap(PyTypeObject *type, swarf_surface *handle, program_object *program, PyObject *before)
+{
+    surface_object *self = handle ? (surface_object *)PyType_GenericAlloc(type, 0) : NULL;
+    if (!self) {
+        swarf_surface_release(handle);
+        program->exports--;
+        Py_DECREF((PyObject *)program);
+        return NULL;
+    }
+    self->handle = handle;
+    self->program = program;
+    self->before = Py_XNewRef(before);
+    return (PyObject *)self;
+}
+
 static PyObject *surface_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 {
     static char *names[] = {"first", "program", "tools", "progress", NULL};
@@ -23,16 +38,7 @@ static PyObject *surface_new(PyTypeObject *type, PyObject *args, PyObject *keywo
                           swarf_surface_create(((stock_object *)first)->handle, held->handle, tools, tool_count,
                                                &call.progress, &handle));
     tools_free(tools, tool_count);
-    surface_object *self = failed ? NULL : (surface_object *)PyType_GenericAlloc(type, 0);
-    if (!self) {
-        swarf_surface_release(handle);
-        held->exports--;
-        Py_DECREF((PyObject *)held);
-        return NULL;
-    }
-    self->handle = handle;
-    self->program = held;
-    return (PyObject *)self;
+    return surface_wrap(type, failed ? NULL : handle, held, NULL);
 }
 
 static void surface_dealloc(PyObject *object)
@@ -41,8 +47,14 @@ static void surface_dealloc(PyObject *object)
     swarf_surface_release(self->handle);
     self->program->exports--;
     Py_DECREF((PyObject *)self->program);
+    Py_XDECREF(self->before);
     object_free(object);
 }
+
+static PyMethodDef surface_methods[] = {
+    {"next", WITH_KEYWORDS(surface_next), METH_VARARGS | METH_KEYWORDS, surface_next_doc},
+    {NULL, NULL, 0, NULL},
+};
 
 static PyType_Slot surface_slots[] = {
     {Py_tp_doc, "Surface(first, program, tools, *, progress=None)\n--\n\n"
@@ -52,6 +64,7 @@ static PyType_Slot surface_slots[] = {
                 "added to while the surface lives. Immutable, any thread."},
     {Py_tp_new, surface_new},
     {Py_tp_dealloc, surface_dealloc},
+    {Py_tp_methods, surface_methods},
     {0, NULL},
 };
 

@@ -243,6 +243,20 @@ class Stock:
     @classmethod
     def estimate(cls, lo: Point, hi: Point, voxel: float) -> int:
         """Bytes that a stock filling this box may need while it is cut."""
+    def placed(
+        self,
+        placement: Table,
+        *,
+        voxel: Optional[float] = None,
+        surface: Optional[Surface] = None,
+        moves: Optional[int] = None,
+        memory_limit: int = 0,
+        progress: Progress = None,
+    ) -> Stock:
+        """The stock turned and moved, as a new Stock: ``placement`` is three rows of rotation and shift (mm), (3, 4).
+        Quarter turns with any shift keep every voxel. Any other turn, or another ``voxel`` (mm), goes by the mesh:
+        without loss to speak of with the Surface of which the stock has seen the first ``moves`` (None: all), else
+        edges are good to half a voxel. ValueError: not a rotation; GeometryError: nothing is left of the stock."""
     def write(self, path: Path, *, progress: Progress = None) -> None:
         """To a .vdb file; beside the target and renamed, so a failure loses nothing."""
     def copy(self, /) -> Stock:
@@ -587,6 +601,17 @@ class Surface:
     def __new__(
         cls, first: Stock, program: Program, tools: dict[int, Cutter], *, progress: Progress = None
     ) -> Surface: ...
+    def next(
+        self,
+        placement: Table,
+        program: Program,
+        tools: dict[int, Cutter],
+        *,
+        moves: Optional[int] = None,
+        progress: Progress = None,
+    ) -> Surface:
+        """The Surface of the next set-up: this one after its first ``moves`` (None: all), turned and moved by
+        ``placement``, is the first shape of ``program``. Nothing is lost."""
 
 @final
 class Mesh:
@@ -622,6 +647,14 @@ class Mesh:
         """Tuple of a Shell per piece that hangs together by its edges."""
     def keep_shells(self, shells: Sequence[int], /) -> Mesh:
         """A Mesh of these shells alone, by their places in shells()."""
+    def placed(self, placement: Table, /) -> Mesh:
+        """The mesh turned and moved, as a new Mesh: ``placement`` is three rows of rotation and shift (mm)."""
+    def origins(
+        self, surface: Surface, *, moves: Optional[int] = None, reach: float = 0.0, progress: Progress = None
+    ) -> memoryview:
+        """What made each triangle: a read-only (m, 3) int32 view of set-up (0: the Surface's own, 1: the one before
+        ...), move (-1: the first shape, -2: not known) and piece of the cutter or the first shape. Looked for within
+        ``reach`` mm (0: a voxel) of the triangle's middle."""
     def section(self, point: Point, normal: Point) -> tuple[tuple[tuple[float, float, float], ...], ...]:
         """Where the plane through ``point`` cuts the mesh: a tuple of polylines, each a tuple of (x, y, z) in mm,
         material on the left seen against ``normal``. In a closed mesh each goes on from its last point to its

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from typing import Sequence
+from dataclasses import dataclass
+from typing import Any, Optional, Sequence
 
-from . import _native, gcode, holders, readers, specs
+from . import _native, gcode, holders, placement, readers, specs
 from .console import one_line
 from .job import Job
 from .progress import Bar
@@ -17,10 +18,42 @@ from .simulate import DEFAULT_RESOLUTION
 FINDINGS_SHOWN = 20
 
 
+@dataclass
+class SetUp:
+    """One set-up as the words tell it."""
+
+    path: Optional[str] = None  #: None: the input
+    job: Optional[str] = None
+    turn: Optional[placement.Turn] = None
+
+
+class OfSetUp(argparse.Action):
+    """``--then`` begins a set-up; ``--job`` and ``--turn`` are of the one begun last."""
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any,
+                 option_string: Optional[str] = None) -> None:
+        set_ups = namespace.set_ups = list(namespace.set_ups or [SetUp()])
+        if self.dest == "then":
+            set_ups.append(SetUp(values))
+            return
+        if getattr(set_ups[-1], self.dest) is not None:
+            raise argparse.ArgumentError(self, "given twice for one set-up; --then begins the next")
+        try:
+            setattr(set_ups[-1], self.dest, placement.parse(values) if self.dest == "turn" else values)
+        except ValueError as error:
+            raise argparse.ArgumentError(self, str(error)) from None
+
+
 def add_arguments(command: argparse.ArgumentParser) -> None:
     """The input and how it is to be cut."""
     command.add_argument("input", metavar="INPUT", help="a G-code file, or a .FCStd file where the add-on is installed")
-    command.add_argument("--job", metavar="NAME", help="the job in a .FCStd file, if it has several")
+    command.set_defaults(set_ups=None)
+    command.add_argument("--job", metavar="NAME", action=OfSetUp, default=argparse.SUPPRESS,
+                         help="the job in a .FCStd file, if it has several")
+    command.add_argument("--then", metavar="INPUT", action=OfSetUp, default=argparse.SUPPRESS,
+                         help="the next set-up: it cuts what is left (repeatable); a --job and a --turn after it are its")
+    command.add_argument("--turn", metavar="SPEC", action=OfSetUp, default=argparse.SUPPRESS,
+                         help=f"how the stock lies in the set-up, {placement.HELP}")
     command.add_argument("--stock", metavar="SPEC", help=specs.STOCK_HELP)
     command.add_argument("--holder", metavar="N=NAME,stickout=MM", action="append", default=[],
                          help="what holds tool N, e.g. 1=SK40-ER16,stickout=35 or 1=form:0/0:20/0:20/50,stickout=40 "
@@ -41,13 +74,31 @@ def set_threads(arguments: argparse.Namespace) -> None:
 
 
 def read_job(arguments: argparse.Namespace, bar: Bar) -> Job:
-    """The Job in the input, with what the other words say of stock and tools. ValueError where something is missing."""
+    """The Job in the input, with what the other words say of stock and tools; its stock is what the set-ups before it
+    leave. ValueError where something is missing."""
+    set_ups = arguments.set_ups or [SetUp()]
     stock = None if arguments.stock is None else specs.stock(arguments.stock)
+    given = _holders(arguments.holder)
+    jobs: list[Job] = []
+    for set_up in set_ups:
+        if jobs:
+            stock = {"kind": "result", "job": jobs[-1]}
+        jobs.append(_read_set_up(arguments, set_up, stock, bar))
+    for number, (word, *_) in given.items():
+        if not any(number in job.tools for job in jobs):
+            raise ValueError(f"holder {word!r}: there is no tool {number}")
+    return jobs[-1]
+
+
+def _read_set_up(arguments: argparse.Namespace, set_up: SetUp, stock: Optional[dict[str, Any]], bar: Bar) -> Job:
+    path = arguments.input if set_up.path is None else set_up.path
     tools = specs.tools(arguments.tool)
     options = gcode.options(arguments)
-    job = readers.read(arguments.input, arguments.job, lambda fraction: bar("read", fraction), options)
+    job = readers.read(path, set_up.job, lambda fraction: bar("read", fraction), options)
     if stock is not None:
         job.stock = stock
+    if set_up.turn is not None and job.stock is not None:
+        job.stock = {**job.stock, "placement": set_up.turn}
     for number, (cutter, text, teeth) in tools.items():
         job.tools[number], job.tool_names[number] = cutter, text
         job.teeth.pop(number, None)  # they were another cutter's
@@ -55,22 +106,28 @@ def read_job(arguments: argparse.Namespace, bar: Bar) -> Job:
             job.teeth[number] = teeth
     add_holders(job, arguments.holder)
     if len(job.program) == 0:
-        raise ValueError(f"{arguments.input}: the program has no moves: there is nothing to simulate")
-    if os.path.splitext(arguments.input)[1].lower() in readers.GCODE_SUFFIXES:
-        check_gcode_job(job, arguments.input)
+        raise ValueError(f"{path}: the program has no moves: there is nothing to simulate")
+    if os.path.splitext(path)[1].lower() in readers.GCODE_SUFFIXES:
+        check_gcode_job(job, path)
     return job
 
 
-def add_holders(job: Job, words: Sequence[str]) -> None:
-    """Put the tools of the job into the holders of ``--holder``; ValueError for tools that are not there."""
-    given = set()
+def _holders(words: Sequence[str]) -> dict[int, tuple[str, str, float, Any]]:
+    """Word, name, stickout and projection of ``--holder`` by tool; ValueError where a tool has two."""
+    found: dict[int, tuple[str, str, float, Any]] = {}
     for word in words:
         number, name, stickout, projection = holders.parse(word)
-        if number not in job.tools:
-            raise ValueError(f"holder {word!r}: there is no tool {number}")
-        if number in given:
+        if number in found:
             raise ValueError(f"holder {word!r}: tool {number} has one already")
-        given.add(number)
+        found[number] = word, name, stickout, projection
+    return found
+
+
+def add_holders(job: Job, words: Sequence[str]) -> None:
+    """Put those tools of ``--holder`` that the job has into their holders. ValueError."""
+    for number, (_, name, stickout, projection) in _holders(words).items():
+        if number not in job.tools:
+            continue
         holder = name if name.lower().startswith("form:") else holders.find(name, projection)
         job.tools[number], notes = holders.hold(job.tools[number], holder, stickout, f"tool {number}")
         job.holders[number] = holders.describe(name, stickout)
@@ -102,7 +159,9 @@ def check_gcode_job(job: Job, path: str) -> None:
 
 
 def print_notes(job: Job) -> None:
-    """What reading the job had to say, on stderr."""
+    """What reading the job, and the set-ups before it, had to say, on stderr."""
+    if job.stock is not None and job.stock["kind"] == "result":
+        print_notes(job.stock["job"])
     for note in job.program.notes:
         print(f"swarf: {note[0]}: {gcode.note_text(note)}", file=sys.stderr)
     for text in job.notes:

@@ -24,6 +24,9 @@ class Job:
         {"kind": "cylinder", "base": (x, y, z), "axis": (x, y, z), "radius": r}   axis: from base to the other end
         {"kind": "mesh", "mesh": Mesh}                              "path": where it came from, for errors
         {"kind": "vdb", "path": path}
+        {"kind": "result", "job": Job}    what is left after that job; "path": a .vdb file that holds it already
+
+    Each may have a "placement", how it lies in this set-up: rows as of Stock.placed(), or a placement.Turn.
     """
 
     name: str

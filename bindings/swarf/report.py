@@ -8,6 +8,7 @@ import tempfile
 from typing import Any, Optional
 
 from . import _native, loads, timing
+from .job import Job
 from .simulate import Result
 from .verify import Verification, operation_of
 
@@ -24,6 +25,32 @@ def _unique(names: tuple[str, ...]) -> list[str]:
         taken.add(unique)
         result.append(unique)
     return result
+
+
+def _findings(names: list[str], simulation: _native.Simulation) -> list[dict[str, Any]]:
+    return [
+        {
+            "severity": finding.severity,
+            "operation": names[finding.operation] if 0 <= finding.operation < len(names) else None,
+            "move": finding.move,
+            "line": finding.line,
+            "tool": finding.tool,
+            "text": finding.text,
+        }
+        for finding in simulation.findings
+    ]
+
+
+def _set_up(job: Job, simulation: _native.Simulation) -> dict[str, Any]:
+    """What is told of a set-up before the last one."""
+    names = _unique(job.program.operations)
+    return {
+        "job": job.name,
+        "moves": len(job.program),
+        "volume_mm3": {"initial": simulation.volume_initial, "final": simulation.volume_final},
+        "removed_mm3_by_operation": dict(zip(names, simulation.removed_by_operation)),
+        "findings": _findings(names, simulation),
+    }
 
 
 def make(
@@ -71,18 +98,9 @@ def make(
         "memory_peak_mb": round(_native.memory_peak() / 1e6, 3),
         "bounding_box": None if box is None else {"lo": list(box[0]), "hi": list(box[1])},
         "mesh": _mesh(result.mesh),
-        "findings": [
-            {
-                "severity": finding.severity,
-                "operation": names[finding.operation] if 0 <= finding.operation < len(names) else None,
-                "move": finding.move,
-                "line": finding.line,
-                "tool": finding.tool,
-                "text": finding.text,
-            }
-            for finding in simulation.findings
-        ],
+        "findings": _findings(names, simulation),
         "notes": list(job.notes),
+        "set_ups_before": [_set_up(before, played) for before, played in result.before],
     }
     if result.comparison is not None:
         fields = ("design_mm3", "stock_mm3", "excess_mm3", "gouge_mm3")

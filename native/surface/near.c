@@ -23,6 +23,7 @@ struct swarf_surface_near {
     struct seen *seen;
     size_t count, room;
     double middle[3];
+    swarf_surface_near *before; /* of the set-up before, NULL where there is none */
 };
 
 swarf_status swarf_surface_near_create(const swarf_surface *surface, swarf_surface_near **out)
@@ -31,6 +32,11 @@ swarf_status swarf_surface_near_create(const swarf_surface *surface, swarf_surfa
     swarf_surface_near *near = calloc(1, sizeof *near);
     if (!near) return swarf_fail(SWARF_ERROR_MEMORY, "surface: out of memory");
     near->surface = swarf_surface_retain((swarf_surface *)surface); /* only its count changes */
+    const swarf_status status = surface->before ? swarf_surface_near_create(surface->before, &near->before) : SWARF_OK;
+    if (status != SWARF_OK) {
+        swarf_surface_near_destroy(near);
+        return status;
+    }
     *out = near;
     return SWARF_OK;
 }
@@ -38,6 +44,7 @@ swarf_status swarf_surface_near_create(const swarf_surface *surface, swarf_surfa
 void swarf_surface_near_destroy(swarf_surface_near *near)
 {
     if (!near) return;
+    swarf_surface_near_destroy(near->before);
     swarf_surface_release(near->surface);
     free(near->seen);
     free(near);
@@ -45,7 +52,7 @@ void swarf_surface_near_destroy(swarf_surface_near *near)
 
 size_t swarf_surface_near_count(const swarf_surface_near *near)
 {
-    return near ? near->count : 0;
+    return near ? near->count + swarf_surface_near_count(near->before) : 0;
 }
 
 struct gathering {
@@ -98,6 +105,40 @@ static int nearer(const void *a, const void *b)
     return x->trace.t0 < y->trace.t0 ? -1 : x->trace.t0 > y->trace.t0;
 }
 
+/* The box turned back to the set-up before, and the box round that. */
+static swarf_status gather_before(swarf_surface_near *near, const swarf_box *where)
+{
+    const swarf_surface *surface = near->surface;
+    swarf_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3];
+        for (int k = 0; k < 3; k++) p[k] = corner >> k & 1 ? where->hi[k] : where->lo[k];
+        swarf_placement_point(&surface->back, p, p);
+        for (int k = 0; k < 3; k++) {
+            box.lo[k] = fmin(box.lo[k], p[k]);
+            box.hi[k] = fmax(box.hi[k], p[k]);
+        }
+    }
+    return swarf_surface_gather(near->before, surface->before_moves, &box);
+}
+
+static void first_shape(const swarf_surface_near *near, const double point[3], swarf_surface_point *out)
+{
+    const swarf_surface *surface = near->surface;
+    if (!near->before) {
+        swarf_surface_first(surface, point, out);
+        return;
+    }
+    double back[3];
+    swarf_placement_point(&surface->back, point, back);
+    swarf_surface_evaluate(near->before, back, out);
+    swarf_placement_direction(&surface->placement, out->normal, out->normal);
+    if (out->move >= 0)
+        out->move = -3 - out->move;
+    else if (out->move != -1)
+        out->move -= (int64_t)swarf_program_move_count(surface->before->program);
+}
+
 swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const swarf_box *where)
 {
     SWARF_REQUIRE(near && where, "surface: NULL");
@@ -122,7 +163,8 @@ swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const 
     }
     g.limit = lo;
     const int top = surface->levels - 1;
-    const swarf_status status = gather_level(&g, top, 0, surface->level_count[top]);
+    swarf_status status = near->before ? gather_before(near, where) : SWARF_OK;
+    if (status == SWARF_OK) status = gather_level(&g, top, 0, surface->level_count[top]);
     if (status != SWARF_OK) {
         near->count = 0;
         return status;
@@ -138,7 +180,7 @@ swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const 
 void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3], swarf_surface_point *out)
 {
     swarf_surface_point found;
-    swarf_surface_first(near->surface, point, &found);
+    first_shape(near, point, &found);
     double square = 0, least = INFINITY;
     for (int k = 0; k < 3; k++) square += (point[k] - near->middle[k]) * (point[k] - near->middle[k]);
     const double away = sqrt(square), first = found.value;

@@ -24,6 +24,7 @@ struct refining {
     const double *points, *directions;
     double reach, *points_out, *normals_out;
     int64_t *moves_out;
+    swarf_surface_point *found_out; /* instead of all these */
     double edge;
     const struct place *places;
     const size_t *runs; /* where the places of each cell start */
@@ -73,6 +74,11 @@ static void refine_point(const struct refining *work, const swarf_surface_near *
     for (int k = 0; k < 3; k++) d[k] = given[k] / length;
     swarf_surface_point found;
     const int ok = find_zero(near, p, d, work->reach, &s, &found);
+    if (work->found_out) {
+        if (!ok) found = (swarf_surface_point){.move = -2};
+        work->found_out[i] = found;
+        return;
+    }
     along(p, d, ok ? s : 0, work->points_out + 3 * i);
     for (int k = 0; k < 3 && work->normals_out; k++) work->normals_out[3 * i + (size_t)k] = ok ? found.normal[k] : d[k];
     if (work->moves_out) work->moves_out[i] = ok ? found.move : -2;
@@ -145,21 +151,34 @@ static swarf_status refine_sorted(struct refining *work, struct place *places, s
     return status;
 }
 
+static swarf_status refine(struct refining *work, size_t count, const swarf_progress *progress)
+{
+    SWARF_REQUIRE(isfinite(work->reach) && work->reach > 0, "surface: reach %g mm is not a positive number",
+                  work->reach);
+    SWARF_REQUIRE(count < UINT32_MAX, "surface: %zu points at once are too many", count);
+    for (size_t i = 0; i < count; i++) {
+        const double *d = work->directions + 3 * i;
+        for (int k = 0; k < 3; k++)
+            SWARF_REQUIRE(isfinite(work->points[3 * i + (size_t)k]) && isfinite(d[k]),
+                          "surface: coordinate %c of point or direction %zu is not finite", "xyz"[k], i);
+        SWARF_REQUIRE(d[0] != 0 || d[1] != 0 || d[2] != 0, "surface: direction %zu has no length", i);
+    }
+    work->edge = cell_voxels * work->surface->voxel;
+    struct place *places = malloc((count + 1) * sizeof *places);
+    size_t *runs = malloc((count + 1) * sizeof *runs);
+    const swarf_status status = places && runs ? refine_sorted(work, places, runs, count, progress)
+                                               : swarf_fail(SWARF_ERROR_MEMORY, "surface: out of memory");
+    free(places);
+    free(runs);
+    return status;
+}
+
 swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, const double *points,
                                   const double *directions, size_t count, double reach_mm,
                                   const swarf_progress *progress, double *points_out, double *normals_out,
                                   int64_t *moves_out)
 {
     SWARF_REQUIRE(surface && (count == 0 || (points && directions && points_out)), "surface: NULL");
-    SWARF_REQUIRE(isfinite(reach_mm) && reach_mm > 0, "surface: reach %g mm is not a positive number", reach_mm);
-    SWARF_REQUIRE(count < UINT32_MAX, "surface: %zu points at once are too many", count);
-    for (size_t i = 0; i < count; i++) {
-        const double *d = directions + 3 * i;
-        for (int k = 0; k < 3; k++)
-            SWARF_REQUIRE(isfinite(points[3 * i + (size_t)k]) && isfinite(d[k]),
-                          "surface: coordinate %c of point or direction %zu is not finite", "xyz"[k], i);
-        SWARF_REQUIRE(d[0] != 0 || d[1] != 0 || d[2] != 0, "surface: direction %zu has no length", i);
-    }
     struct refining work = {.surface = surface,
                             .moves = moves,
                             .points = points,
@@ -167,13 +186,20 @@ swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, co
                             .reach = reach_mm,
                             .points_out = points_out,
                             .normals_out = normals_out,
-                            .moves_out = moves_out,
-                            .edge = cell_voxels * surface->voxel};
-    struct place *places = malloc((count + 1) * sizeof *places);
-    size_t *runs = malloc((count + 1) * sizeof *runs);
-    const swarf_status status = places && runs ? refine_sorted(&work, places, runs, count, progress)
-                                               : swarf_fail(SWARF_ERROR_MEMORY, "surface: out of memory");
-    free(places);
-    free(runs);
-    return status;
+                            .moves_out = moves_out};
+    return refine(&work, count, progress);
+}
+
+swarf_status swarf_surface_find(const swarf_surface *surface, size_t moves, const double *points,
+                                const double *directions, size_t count, double reach_mm, const swarf_progress *progress,
+                                swarf_surface_point *out)
+{
+    SWARF_REQUIRE(surface && (count == 0 || (points && directions && out)), "surface: NULL");
+    struct refining work = {.surface = surface,
+                            .moves = moves,
+                            .points = points,
+                            .directions = directions,
+                            .reach = reach_mm,
+                            .found_out = out};
+    return refine(&work, count, progress);
 }

@@ -185,15 +185,25 @@ static swarf_status build(swarf_surface *surface, const swarf_progress *progress
     }
 }
 
-swarf_status swarf_surface_create(swarf_stock *first, const swarf_program *program, const swarf_tool *tools,
-                                  size_t tool_count, const swarf_progress *progress, swarf_surface **out)
+/* Of the stock `first`, or of the set-up in `from`. */
+static swarf_status create(swarf_stock *first, const swarf_surface *from, const swarf_program *program,
+                           const swarf_tool *tools, size_t tool_count, const swarf_progress *progress,
+                           swarf_surface **out)
 {
-    SWARF_REQUIRE(first && program && out && (tools || tool_count == 0), "surface: stock, program or tools missing");
     swarf_surface *surface = calloc(1, sizeof *surface);
     if (!surface) return swarf_fail(SWARF_ERROR_MEMORY, "surface: out of memory");
     surface->references = 1;
     surface->program = swarf_program_retain((swarf_program *)program); /* only its count changes */
-    swarf_status status = take_first(surface, first);
+    swarf_status status = SWARF_OK;
+    if (first) {
+        status = take_first(surface, first);
+    } else {
+        surface->voxel = from->before->voxel;
+        surface->before = swarf_surface_retain(from->before);
+        surface->before_moves = from->before_moves;
+        surface->placement = from->placement;
+        surface->back = swarf_placement_inverse(&from->placement);
+    }
     if (status == SWARF_OK) status = take_tools(surface, tools, tool_count);
     if (status == SWARF_OK) status = take_parts(surface);
     if (status == SWARF_OK) status = build(surface, progress);
@@ -203,6 +213,44 @@ swarf_status swarf_surface_create(swarf_stock *first, const swarf_program *progr
     }
     *out = surface;
     return SWARF_OK;
+}
+
+swarf_status swarf_surface_create(swarf_stock *first, const swarf_program *program, const swarf_tool *tools,
+                                  size_t tool_count, const swarf_progress *progress, swarf_surface **out)
+{
+    SWARF_REQUIRE(first && program && out && (tools || tool_count == 0), "surface: stock, program or tools missing");
+    return create(first, NULL, program, tools, tool_count, progress, out);
+}
+
+swarf_status swarf_surface_create_next(const swarf_surface *before, size_t moves, const swarf_placement *placement,
+                                       const swarf_program *program, const swarf_tool *tools, size_t tool_count,
+                                       const swarf_progress *progress, swarf_surface **out)
+{
+    SWARF_REQUIRE(before && placement && program && out && (tools || tool_count == 0),
+                  "surface: the set-up before, placement, program or tools missing");
+    const size_t all = swarf_program_move_count(before->program);
+    const swarf_surface from = {.before = (swarf_surface *)before, /* only its count changes */
+                                .before_moves = moves < all ? moves : all,
+                                .placement = *placement};
+    return create(NULL, &from, program, tools, tool_count, progress, out);
+}
+
+void swarf_surface_origin(const swarf_surface *surface, int64_t move, int *set_up, int64_t *index)
+{
+    *set_up = 0;
+    *index = move;
+    if (move >= 0) return;
+    int64_t left = -3 - move; /* among the moves of the set-ups before, the latest first */
+    for (const swarf_surface *at = surface->before; at; at = at->before) {
+        const int64_t moves = (int64_t)swarf_program_move_count(at->program);
+        ++*set_up;
+        if (left >= 0 && left < moves) {
+            *index = left;
+            return;
+        }
+        left -= moves;
+    }
+    *index = -1;
 }
 
 swarf_surface *swarf_surface_retain(swarf_surface *surface)
@@ -220,6 +268,7 @@ void swarf_surface_release(swarf_surface *surface)
     free(surface->section_body);
     free(surface->parts);
     swarf_stock_destroy(surface->field);
+    swarf_surface_release(surface->before);
     swarf_program_release(surface->program);
     free(surface);
 }

@@ -24,9 +24,12 @@ typedef struct swarf_surface_box {
 struct swarf_surface {
     int references; /* only by atomic operations */
     double voxel;
-    int block; /* 1: the first shape is a block from lo to hi; 0: `field` */
+    int block; /* 1: the first shape is a block from lo to hi; 0: `field`, or what is `before` */
     double lo[3], hi[3];
     swarf_stock *field;
+    swarf_surface *before; /* NULL: none; of the set-up before, after its first before_moves */
+    size_t before_moves;
+    swarf_placement placement, back; /* from its coordinates to ours, and back */
     swarf_program *program;
     swarf_body **bodies; /* per tool */
     size_t body_count;
@@ -41,7 +44,7 @@ struct swarf_surface {
 /** The trace of a part; `parts`: of its move. */
 swarf_status swarf_surface_trace(const swarf_surface *surface, size_t part, swarf_trace *out);
 
-/** The first shape as a point sees it: value, normal, piece. */
+/** The first shape as a point sees it: value, normal, piece; not where there is a set-up before. */
 void swarf_surface_first(const swarf_surface *surface, const double point[3], swarf_surface_point *out);
 
 #endif

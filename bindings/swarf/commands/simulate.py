@@ -18,8 +18,8 @@ def add(subparsers: Any) -> None:
     command = subparsers.add_parser(
         "simulate",
         help="cut a stock with a program",
-        description="Cut a stock with the program in INPUT. Exit status: 0 done, 1 findings of class error, 2 could "
-        "not run. Lengths in mm.",
+        description="Cut a stock with the program in INPUT, and what is left of it in the set-ups of --then. Exit "
+        "status: 0 done, 1 findings of class error, 2 could not run. Lengths in mm.",
     )
     inputs.add_arguments(command)
     command.add_argument("--output", metavar="FILE", action="append", default=[],
@@ -56,8 +56,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         report.write(made, arguments.report)
     inputs.print_notes(job)
-    inputs.print_findings([f"{finding.severity}: line {finding.line}: {one_line(finding.text)}"
-                           for finding in result.simulation.findings])
+    inputs.print_findings([
+        f"{finding.severity}: {f'{played.name}: ' if result.before else ''}line {finding.line}: {one_line(finding.text)}"
+        for played, simulation in (*result.before, (job, result.simulation)) for finding in simulation.findings])
     if sys.stdout.isatty():
         print(report.summary(made))
     return FINDINGS if result.failed else DONE

@@ -54,6 +54,35 @@ SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contou
                                           const swarf_progress *progress, swarf_mesh **out,
                                           swarf_contour_report *report);
 
+/** What made each triangle: the point of the surface, after its first `moves`, that is nearest along the normal to the
+ *  triangle's middle, no farther than reach_mm (0: a voxel); `move` -2 where there is none. `out`: one per triangle. */
+SWARF_API swarf_status swarf_mesh_origins(const swarf_mesh *mesh, const swarf_surface *surface, size_t moves,
+                                          double reach_mm, const swarf_progress *progress, swarf_surface_point *out);
+
+/** The mesh turned and moved. */
+SWARF_API swarf_status swarf_mesh_create_placed(const swarf_mesh *mesh, const swarf_placement *placement,
+                                                swarf_mesh **out);
+
+/** How a stock goes into its next set-up. */
+typedef struct swarf_place_options {
+    size_t size;                  /**< sizeof(swarf_place_options) */
+    const swarf_surface *surface; /**< of the stock, borrowed for the call; NULL: the field alone */
+    size_t moves;                 /**< the stock is the surface after its first so many moves */
+    double voxel_mm;              /**< of the new stock; 0: that of `stock` */
+    size_t memory_limit;          /**< as in swarf_stock_options */
+} swarf_place_options;
+
+/** No surface, the same voxel, no explicit memory limit. */
+SWARF_API swarf_place_options swarf_place_options_default(void);
+
+/** A stock turned and moved, as a new one; `options` NULL: the default. Quarter turns with any shift lose nothing where
+ *  the voxel stays: *lossless (may be NULL) is 1, and the new voxels are the old ones. Else the new field is the exact
+ *  distance to the turned mesh of the stock: with a surface within two hundredths of a voxel, at edges too, without one
+ *  edges are known to half a voxel. SWARF_ERROR_GEOMETRY: nothing is left of the stock. */
+SWARF_API swarf_status swarf_stock_place(swarf_stock *stock, const swarf_placement *placement,
+                                         const swarf_place_options *options, const swarf_progress *progress,
+                                         swarf_stock **out, int *lossless);
+
 /** Read .stl (binary or text, welded), .ply or .obj by its content. SWARF_ERROR_IO / SWARF_ERROR_FORMAT. */
 SWARF_API swarf_status swarf_mesh_read(const char *path, swarf_mesh **out);
 /** Write .stl (binary), .ply (binary), .obj, .3mf or .glb (glTF, in metres, y up) by the suffix; written beside and

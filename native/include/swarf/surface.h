@@ -10,6 +10,7 @@
 #ifndef SWARF_SURFACE_H
 #define SWARF_SURFACE_H
 
+#include "placement.h"
 #include "stock.h"
 
 #ifdef __cplusplus
@@ -23,6 +24,12 @@ typedef struct swarf_surface swarf_surface;
  *  cut nothing. SWARF_ERROR_BUSY: the stock is in use by another thread. The caller owns one reference. */
 SWARF_API swarf_status swarf_surface_create(swarf_stock *first, const swarf_program *program, const swarf_tool *tools,
                                             size_t tool_count, const swarf_progress *progress, swarf_surface **out);
+/** The surface of the next set-up: what `before` (kept) is after its first `moves`, turned and moved by `placement`, is
+ *  the first shape of `program`. Nothing of it is lost, as nothing is sampled. The voxel is that of `before`. */
+SWARF_API swarf_status swarf_surface_create_next(const swarf_surface *before, size_t moves,
+                                                 const swarf_placement *placement, const swarf_program *program,
+                                                 const swarf_tool *tools, size_t tool_count,
+                                                 const swarf_progress *progress, swarf_surface **out);
 SWARF_API swarf_surface *swarf_surface_retain(swarf_surface *surface);
 /** Give one reference back; NULL is legal. */
 SWARF_API void swarf_surface_release(swarf_surface *surface);
@@ -32,12 +39,17 @@ typedef struct swarf_surface_point {
     double value;     /**< signed distance in mm as in the stock's field: negative in material; 0 on the surface */
     double normal[3]; /**< unit, out of the material: the gradient of `value` */
     double t;         /**< 0..1 along the move where the cutter touches */
-    int64_t move;     /**< index into the program; -1: the first shape */
+    int64_t move;     /**< index into the program; -1: the first shape; below -2: swarf_surface_origin() tells */
     /** Of the first shape: block 0 -x, 1 +x, 2 -y ... 5 +z, else 0. Of a cutter: number
      *  of the line or arc among those its meridian is cut into, from the tip upwards. */
     int32_t piece;
     int32_t reserved;
 } swarf_surface_point;
+
+/** The set-up of a move as points name it, and its index in that set-up's program: 0 the surface's own, 1 the one
+ * before
+ *  ...; index -1 and the number of set-ups before for the first shape of all. Other numbers come out as that. */
+SWARF_API void swarf_surface_origin(const swarf_surface *surface, int64_t move, int *set_up, int64_t *index);
 
 /** What can matter within one small box: scratch of one thread. Keeps the surface alive. */
 typedef struct swarf_surface_near swarf_surface_near;
@@ -57,6 +69,12 @@ SWARF_API void swarf_surface_evaluate(const swarf_surface_near *near, const doub
  *  seen there; 0 and outputs untouched when the values at a and b are not of opposite sign. */
 SWARF_API int swarf_surface_crossing(const swarf_surface_near *near, const double a[3], const double b[3],
                                      double tolerance_mm, double *t, swarf_surface_point *out);
+
+/** What made the surface near `count` points: the zero along their directions as swarf_surface_refine() finds it, as
+ * seen from there; move -2 where there is none. */
+SWARF_API swarf_status swarf_surface_find(const swarf_surface *surface, size_t moves, const double *points,
+                                          const double *directions, size_t count, double reach_mm,
+                                          const swarf_progress *progress, swarf_surface_point *out);
 
 /** Move points (3 doubles each) along their directions (any length but 0), forth or back by at most reach_mm, onto the
  *  nearest zero; where there is none they stay, with move -2. normals_out (3 doubles each) and moves_out may be NULL;

@@ -11,6 +11,7 @@
 #include "history.h"
 #include "load.h"
 #include "mesh.h"
+#include "placement.h"
 #include "program.h"
 #include "render.h"
 #include "solid.h"

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* From one set-up to the next: methods of Stock, Surface and Mesh. */
+#include "native.h"
+
+/** A placement from three rows of four numbers. 0, or -1 with an exception. */
+static int placement_read(module_state *state, PyObject *object, swarf_placement *out)
+{
+    double *rows;
+    size_t count;
+    if (buffer_doubles(object, "placement", 4, &rows, &count)) return -1;
+    int failed = count != 3;
+    if (failed)
+        PyErr_Format(PyExc_ValueError, "placement: %zu rows where 3 are needed, of rotation and shift", count);
+    else if (swarf_placement_create(rows, out))
+        failed = error_raise(state, SWARF_ERROR_ARGUMENT) == NULL;
+    PyMem_Free(rows);
+    return failed ? -1 : 0;
+}
+
+/** The surface in an argument and its moves; *out NULL for None. 0, or -1 with an exception. */
+static int surface_argument(module_state *state, PyObject *given, PyObject *moves, const swarf_surface **out,
+                            size_t *count)
+{
+    *out = NULL;
+    *count = 0;
+    if (given == Py_None) {
+        if (moves == Py_None) return 0;
+        PyErr_SetString(PyExc_ValueError, "moves: they are those of a surface, which was not given");
+        return -1;
+    }
+    if (!PyObject_TypeCheck(given, state->surface)) {
+        PyErr_SetString(PyExc_TypeError, "surface: needs a Surface or None");
+        return -1;
+    }
+    const surface_object *surface = (const surface_object *)given;
+    size_t from;
+    if (program_range(surface->program, 0, moves, &from, count)) return -1;
+    *out = surface->handle;
+    return 0;
+}
+
+const char stock_placed_doc[] =
+    "placed($self, placement, *, voxel=None, surface=None, moves=None, memory_limit=0, progress=None)\n--\n\n"
+    "The stock turned and moved, as a new Stock: ``placement`` is three rows of rotation and shift (mm), (3, 4). "
+    "Quarter\n"
+    "turns with any shift keep every voxel. Any other turn, or another ``voxel`` (mm), goes by the mesh: without loss "
+    "to\n"
+    "speak of with the Surface of which the stock has seen the first ``moves`` (None: all), else edges are good to "
+    "half a\n"
+    "voxel. ValueError: not a rotation; GeometryError: nothing is left of the stock.";
+
+PyObject *stock_placed(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"placement", "voxel", "surface", "moves", "memory_limit", "progress", NULL};
+    module_state *state = state_of(self);
+    PyObject *given, *voxel = Py_None, *surface = Py_None, *moves = Py_None, *progress = NULL;
+    Py_ssize_t limit = 0;
+    swarf_placement placement;
+    swarf_place_options options = swarf_place_options_default();
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|$OOOnO:placed", names, &given, &voxel, &surface, &moves, &limit,
+                                     &progress) ||
+        placement_read(state, given, &placement) ||
+        surface_argument(state, surface, moves, &options.surface, &options.moves))
+        return NULL;
+    if (limit < 0) return PyErr_Format(PyExc_ValueError, "memory_limit %zd is negative", limit);
+    options.memory_limit = (size_t)limit;
+    if (voxel != Py_None) {
+        options.voxel_mm = PyFloat_AsDouble(voxel);
+        if (options.voxel_mm == -1.0 && PyErr_Occurred()) return NULL;
+        if (!(options.voxel_mm > 0)) return PyErr_Format(PyExc_ValueError, "voxel: not a positive length in mm");
+    }
+    native_call call;
+    if (call_begin(&call, progress)) return NULL;
+    swarf_stock *handle = NULL;
+    const swarf_status status =
+        swarf_stock_place(((stock_object *)self)->handle, &placement, &options, &call.progress, &handle, NULL);
+    return stock_wrap(Py_TYPE(self), &call, status, handle);
+}
+
+const char surface_next_doc[] =
+    "next($self, placement, program, tools, *, moves=None, progress=None)\n--\n\n"
+    "The Surface of the next set-up: this one after its first ``moves`` (None: all), turned and moved by "
+    "``placement``, is\n"
+    "the first shape of ``program``. Nothing is lost.";
+
+PyObject *surface_next(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"placement", "program", "tools", "moves", "progress", NULL};
+    module_state *state = state_of(self);
+    PyObject *given, *program, *dict, *moves = Py_None, *progress = NULL;
+    swarf_placement placement;
+    const swarf_surface *before;
+    size_t count;
+    swarf_tool *tools;
+    size_t tool_count;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO!O!|$OO:next", names, &given, state->program, &program,
+                                     &PyDict_Type, &dict, &moves, &progress) ||
+        placement_read(state, given, &placement) || surface_argument(state, self, moves, &before, &count) ||
+        tools_read(state, dict, &tools, &tool_count))
+        return NULL;
+    program_object *held = (program_object *)Py_NewRef(program);
+    held->exports++; /* its moves must not change while the surface shows them */
+    swarf_surface *handle = NULL;
+    native_call call;
+    int failed = call_begin(&call, progress);
+    if (!failed)
+        failed = call_end(&call, state,
+                          swarf_surface_create_next(before, count, &placement, held->handle, tools, tool_count,
+                                                    &call.progress, &handle));
+    tools_free(tools, tool_count);
+    return surface_wrap(Py_TYPE(self), failed ? NULL : handle, held, self);
+}
+
+const char mesh_placed_doc[] =
+    "placed($self, placement, /)\n--\n\n"
+    "The mesh turned and moved, as a new Mesh: ``placement`` is three rows of rotation and shift (mm).";
+
+PyObject *mesh_placed(PyObject *self, PyObject *given)
+{
+    module_state *state = state_of(self);
+    swarf_placement placement;
+    native_call call;
+    if (placement_read(state, given, &placement) || call_begin(&call, NULL)) return NULL;
+    swarf_mesh *handle = NULL;
+    const swarf_status status = swarf_mesh_create_placed(((mesh_object *)self)->handle, &placement, &handle);
+    return call_end(&call, state, status) ? NULL : mesh_wrap(Py_TYPE(self), handle);
+}
+
+const char mesh_origins_doc[] =
+    "origins($self, surface, *, moves=None, reach=0.0, progress=None)\n--\n\n"
+    "What made each triangle: a read-only (m, 3) int32 view of set-up (0: the Surface's own, 1: the one before ...), "
+    "move\n"
+    "(-1: the first shape, -2: not known) and piece of the cutter or the first shape. Looked for within ``reach`` mm "
+    "(0: a\n"
+    "voxel) of the triangle's middle.";
+
+PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"surface", "moves", "reach", "progress", NULL};
+    module_state *state = state_of(self);
+    PyObject *given, *moves = Py_None, *progress = NULL;
+    const swarf_surface *surface;
+    const swarf_mesh *mesh = ((mesh_object *)self)->handle;
+    size_t count;
+    double reach = 0;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$OdO:origins", names, state->surface, &given, &moves, &reach,
+                                     &progress) ||
+        surface_argument(state, given, moves, &surface, &count))
+        return NULL;
+    const size_t rows = swarf_mesh_triangles(mesh).triangle_count;
+    swarf_surface_point *points = PyMem_Calloc(rows + 1, sizeof *points);
+    PyObject *values = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(3 * rows * sizeof(int32_t))), *result = NULL;
+    native_call call;
+    if (!points) {
+        PyErr_NoMemory();
+    } else if (values && !call_begin(&call, progress)) {
+        const swarf_status status = swarf_mesh_origins(mesh, surface, count, reach, &call.progress, points);
+        int32_t *out = (int32_t *)(void *)PyBytes_AsString(values);
+        for (size_t i = 0; i < rows && !status; i++) {
+            int set_up = 0;
+            int64_t move = -2;
+            if (points[i].move != -2) swarf_surface_origin(surface, points[i].move, &set_up, &move);
+            out[3 * i] = set_up;
+            out[3 * i + 1] = (int32_t)move;
+            out[3 * i + 2] = points[i].piece;
+        }
+        if (!call_end(&call, state, status))
+            result = buffer_view(state, values, out, "i", sizeof(int32_t), rows, 3, NULL);
+    }
+    PyMem_Free(points);
+    Py_XDECREF(values);
+    return result;
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "swarf/placement.h"
+
+#include "base/status.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What a rotation may lack of orthonormal, and what a coordinate of an axis may lack of 0 or 1 to be one: a micrometre
+ * at 1 m from the origin. */
+static const double mended = 1e-6, on_axis = 1e-9;
+
+static const double farthest = 1e6;
+
+swarf_placement swarf_placement_identity(void)
+{
+    return (swarf_placement){.rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static void scale(double a[3], double factor)
+{
+    for (int k = 0; k < 3; k++) a[k] *= factor;
+}
+
+/* The first row as it is, the second across it, the third across both: exact where the axes are axes already. */
+static void mend(double rows[3][3])
+{
+    scale(rows[0], 1 / sqrt(dot(rows[0], rows[0])));
+    const double along = dot(rows[0], rows[1]);
+    for (int k = 0; k < 3; k++) rows[1][k] -= along * rows[0][k];
+    scale(rows[1], 1 / sqrt(dot(rows[1], rows[1])));
+    cross(rows[0], rows[1], rows[2]);
+}
+
+swarf_status swarf_placement_create(const double rows[12], swarf_placement *out)
+{
+    SWARF_REQUIRE(rows && out, "placement: NULL");
+    swarf_placement made;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 4; k++)
+            SWARF_REQUIRE(isfinite(rows[4 * i + k]), "placement: row %d, column %d is not finite", i, k);
+        memcpy(made.rotation[i], rows + 4 * i, sizeof made.rotation[i]);
+        made.shift[i] = rows[4 * i + 3];
+        SWARF_REQUIRE(fabs(made.shift[i]) <= farthest, "placement: shifted by %g mm in %c; up to %g are possible",
+                      made.shift[i], "xyz"[i], farthest);
+    }
+    for (int i = 0; i < 3; i++)
+        for (int k = i; k < 3; k++) {
+            const double wanted = i == k, found = dot(made.rotation[i], made.rotation[k]);
+            SWARF_REQUIRE(fabs(found - wanted) <= mended,
+                          "placement: rows %d and %d of the rotation have the product %g where a rotation has %g: it "
+                          "skews or scales",
+                          i, k, found, wanted);
+        }
+    double third[3];
+    cross(made.rotation[0], made.rotation[1], third);
+    SWARF_REQUIRE(dot(third, made.rotation[2]) > 0, "placement: it mirrors; a part can only be turned and moved");
+    mend(made.rotation);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            const double whole = round(made.rotation[i][k]);
+            if (fabs(made.rotation[i][k] - whole) < on_axis) made.rotation[i][k] = whole + 0.0;
+        }
+    *out = made;
+    return SWARF_OK;
+}
+
+void swarf_placement_direction(const swarf_placement *placement, const double in[3], double out[3])
+{
+    const double d[3] = {in[0], in[1], in[2]};
+    for (int k = 0; k < 3; k++) out[k] = dot(placement->rotation[k], d);
+}
+
+void swarf_placement_point(const swarf_placement *placement, const double in[3], double out[3])
+{
+    swarf_placement_direction(placement, in, out);
+    for (int k = 0; k < 3; k++) out[k] += placement->shift[k];
+}
+
+swarf_placement swarf_placement_inverse(const swarf_placement *placement)
+{
+    swarf_placement back = {0};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) back.rotation[i][k] = placement->rotation[k][i];
+    for (int i = 0; i < 3; i++) back.shift[i] = 0.0 - dot(back.rotation[i], placement->shift);
+    return back;
+}
+
+int swarf_placement_quarters(const swarf_placement *placement, int axis[3], int sign[3])
+{
+    int found[3] = {0};
+    for (int k = 0; k < 3; k++) {
+        const double *row = placement->rotation[k];
+        while (found[k] < 3 && row[found[k]] == 0) found[k]++;
+        if (found[k] == 3 || fabs(row[found[k]]) != 1) return 0;
+    }
+    for (int k = 0; k < 3; k++) {
+        axis[k] = found[k];
+        sign[k] = placement->rotation[k][found[k]] > 0 ? 1 : -1;
+    }
+    return 1;
+}

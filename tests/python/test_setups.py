@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From one set-up to the next: placements in words, chains of jobs, stocks placed, and the command line."""
+import json
+import math
+
+import pytest
+
+import swarf
+from swarf import placement
+from swarf.cli import main
+from swarf.job import Job
+from swarf.stocks import make_first, make_stock, stock_box
+
+LO, HI, VOXEL = (0.0, 0.0, -10.0), (60.0, 40.0, 0.0), 0.5
+BOX = {"kind": "box", "lo": LO, "hi": HI}
+TOOLS = {1: "flat:d=6,l=20"}
+#: A slot right through, 6 wide and 4 deep, and what it takes.
+TOP = "T1 M6\nS8000 M3\nG0 X-10 Y20 Z5\nG1 Z-4 F200\nG1 X70 F600\nG0 Z5\nM2\n"
+#: Across it from the other side: 8 mm deep of 10, so that both meet.
+BOTTOM = "T1 M6\nS8000 M3\nG0 X20 Y-10 Z5\nG1 Z-8 F200\nG1 Y50 F600\nG0 Z5\nM2\n"
+LEFT_MM3 = 60 * 40 * 10 - 60 * 6 * 4 - 40 * 6 * 8 + 6 * 6 * 2
+
+
+def make_job(text, stock, name="job"):
+    return Job(name=name, program=swarf.Program.parse_gcode(text), tools={1: swarf.Cutter(TOOLS[1])}, stock=stock)
+
+
+def area_of(mesh, triangle):
+    a, b, c = (mesh.vertices.tolist()[vertex] for vertex in mesh.triangles.tolist()[triangle])
+    u, v = ([q - p for p, q in zip(a, end)] for end in (b, c))
+    return math.hypot(*(u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3] for k in range(3))) / 2
+
+
+def close(rows, wanted):
+    return all(a == pytest.approx(b, abs=1e-12) for row, other in zip(rows, wanted) for a, b in zip(row, other))
+
+
+def test_words():
+    box = ((10, 20, -6), (30, 24, -1))
+    over = placement.parse("x180,top=0").rows(box)
+    assert placement.box_of(over, box) == ((10, 20, -5), (30, 24, 0)) and placement.is_quarter(over)
+    assert placement.point(over, (10, 20, -6)) == (10, 24, 0)  # the low corner is at the top now
+    assert close(placement.parse("z90").rows(box), ((0, -1, 0, 42), (1, 0, 0, 2), (0, 0, 1, 0)))
+    both = placement.parse("x90, z-30, left=1, back=2, dz=0.5").rows(box)
+    lo, hi = placement.box_of(both, box)
+    assert lo[0] == pytest.approx(1) and hi[1] == pytest.approx(2)
+    assert placement.point(both, (20, 22, -3.5))[2] == pytest.approx(-3)
+    turned = placement.direction(both, (0, 1, 0))  # about X by 90: up; about Z: still up
+    assert turned == pytest.approx((0, 0, 1))
+    assert not placement.is_quarter(both)
+    back = placement.after(placement.rotation_about(0, 90), placement.rotation_about(0, 270))
+    assert close(back, placement.IDENTITY)
+
+
+@pytest.mark.parametrize("text, part", [
+    ("x180,left=1,right=2", "along X"), ("q180", "'q180' is no turn"), ("xabc", "'xabc'"), ("top=nan", "'top=nan'"),
+    ("upper=3", "'upper=3'"), ("", "''"), ("dx", "'dx'"), ("x=3", "'x=3'"),
+])
+def test_words_that_are_none(text, part):
+    with pytest.raises(ValueError, match="turn .*" + part):
+        placement.parse(text)
+
+
+def test_placed_keeps_or_says_what_it_cannot():
+    stock = swarf.Stock.box(LO, HI, VOXEL)
+    stock.simulate(swarf.Program.parse_gcode(TOP), {1: swarf.Cutter(TOOLS[1])})
+    rows = placement.parse("y90,z90,dx=3.3").rows(stock.bounding_box())
+    there = stock.placed(rows)
+    assert there.voxel == stock.voxel and there.volume() == pytest.approx(stock.volume(), rel=1e-7)
+    back = placement.after(placement.rotation_about(1, -90), placement.rotation_about(2, -90))
+    home = placement.shifted(back, [-value for value in placement.direction(back, [row[3] for row in rows])])
+    assert there.placed(home).hash() == stock.hash()
+    for wrong, part in (([[1, 0, 0, 0]], "1 rows"), ([[1, 0, 0], [0, 1, 0], [0, 0, 1]], "3 numbers where 4"),
+                        ([[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]], "skews or scales")):
+        with pytest.raises(ValueError, match=part):
+            stock.placed(wrong)
+    with pytest.raises(ValueError, match="voxel"):
+        stock.placed(rows, voxel=0)
+    with pytest.raises(ValueError, match="moves"):
+        stock.placed(rows, moves=3)
+    with pytest.raises(TypeError, match="surface"):
+        stock.placed(rows, surface=3)
+
+
+@pytest.mark.parametrize("turn, voxel", [("x180,top=0", None), ("x180,top=0", 0.4), ("x180,z30,top=0", None)])
+def test_a_chain_is_cut_from_both_sides(turn, voxel):
+    """The mesh is exact in both set-ups, whatever the turn: its volume is that of the closed form."""
+    top = make_job(TOP, BOX, "top")
+    bottom = make_job(BOTTOM, {"kind": "result", "job": top, "placement": placement.parse(turn)}, "bottom")
+    if "z30" in turn:  # the cut turned along: from above, through the part's middle line at X 20
+        rows = placement.parse(turn).rows((LO, HI))
+        ends = [placement.point(rows, (20, y, -2)) for y in (60, -20)]
+        bottom.program = swarf.Program.parse_gcode(
+            "T1 M6\nG0 X{0:.6f} Y{1:.6f} Z5\nG1 Z-8 F200\nG1 X{2:.6f} Y{3:.6f}\n".format(*ends[0][:2], *ends[1][:2]))
+    done = swarf.simulate(bottom, voxel=VOXEL if voxel is None else voxel)
+    assert done.mesh.closed and done.mesh.volume == pytest.approx(LEFT_MM3, rel=2e-5)
+    assert done.stock.volume() == pytest.approx(LEFT_MM3, rel=2e-3)
+    assert [(job.name, len(played.removed_by_operation)) for job, played in done.before] == [("top", 1)]
+    assert done.simulation.volume_initial - done.simulation.volume_final == pytest.approx(40 * 6 * 8 - 6 * 6 * 2, rel=5e-3)
+    origins = done.mesh.origins(done.surface).tolist()
+    assert {row[0] for row in origins} == {0, 1}
+    unknown = sum(area_of(done.mesh, index) for index, row in enumerate(origins) if row[1] == -2)
+    assert unknown < 1e-4 * done.mesh.area  # slivers, whose normals may be any
+    by_set_up = [sum(row[0] == number and row[1] >= 0 for row in origins) for number in (0, 1)]
+    assert min(by_set_up) > 3
+
+
+def test_a_kept_result_is_as_good(tmp_path):
+    """A .vdb file of the first set-up, with the job that made it, gives the same bits as playing it."""
+    top = make_job(TOP, BOX, "top")
+    done = swarf.simulate(top, voxel=VOXEL, outputs=[str(tmp_path / "top.vdb")])
+    assert done.mesh is not None
+    over = placement.parse("x180,top=0")
+    played = make_first({"kind": "result", "job": top, "placement": over}, voxel=VOXEL)
+    kept = make_first({"kind": "result", "job": top, "placement": over, "path": str(tmp_path / "top.vdb")})
+    assert kept.stock.hash() == played.stock.hash() and kept.played == [] and len(played.played) == 1
+    finer = make_first({"kind": "result", "job": top, "placement": over, "path": str(tmp_path / "top.vdb")}, voxel=0.3)
+    assert finer.stock.voxel == pytest.approx(0.3)
+    assert finer.stock.volume() == pytest.approx(60 * 40 * 10 - 60 * 6 * 4, rel=2e-3)
+
+
+def test_shapes_are_turned_not_their_voxels():
+    over = placement.parse("z30").rows((LO, HI))
+    box = make_stock({**BOX, "placement": over}, voxel=VOXEL)
+    assert box.volume() == pytest.approx(24000, rel=2e-4)
+    assert stock_box({**BOX, "placement": placement.parse("z90,left=0")})[1] == pytest.approx((40, 50, 0))
+    bar = make_stock({"kind": "cylinder", "base": (0, 0, 0), "axis": (0, 0, 20), "radius": 5,
+                      "placement": placement.parse("y90,left=0")}, voxel=0.25)
+    assert bar.bounding_box()[0] == pytest.approx((0, -5, 5), abs=0.13)
+    mesh = swarf.Mesh.from_stock(swarf.Stock.box(LO, HI, VOXEL))
+    turned = mesh.placed(over)
+    assert turned.volume == pytest.approx(mesh.volume, rel=1e-5)
+    assert make_stock({"kind": "mesh", "mesh": mesh, "placement": over}, voxel=VOXEL).volume() == pytest.approx(24000, rel=1e-3)
+
+
+def test_chains_that_cannot_be():
+    ring = make_job(TOP, None)
+    ring.stock = {"kind": "result", "job": ring}
+    with pytest.raises(ValueError, match="after itself|extent|recursion"):
+        make_stock(ring.stock, voxel=VOXEL)
+    away = make_job("T1 M6\nG0 X30 Y20 Z5\nG1 Z-12 F100\n", {"kind": "box", "lo": (29, 19, -10), "hi": (31, 21, 0)})
+    with pytest.raises(swarf.GeometryError, match="job: .*nothing is left"):
+        make_stock({"kind": "result", "job": away, "placement": placement.parse("x180")}, voxel=VOXEL)
+    with pytest.raises(ValueError, match="does not say"):
+        make_stock({"kind": "result", "job": make_job(TOP, None)}, voxel=VOXEL)
+
+
+def run(capsys, *words):
+    status = main(["simulate", *map(str, words)])
+    return status, capsys.readouterr().err
+
+
+def test_command_line(tmp_path, capsys):
+    top, bottom = tmp_path / "top.nc", tmp_path / "bottom.nc"
+    top.write_text(TOP)
+    bottom.write_text(BOTTOM)
+    common = ("--tool", "1=" + TOOLS[1], "--voxel", VOXEL)
+    status, errors = run(capsys, top, "--stock", "box:0,0,-10,60,40,0", *common, "--then", bottom, "--turn", "x180,top=0",
+                         "--output", tmp_path / "both.ply", "--report", tmp_path / "both.json")
+    assert (status, errors) == (0, "")
+    assert swarf.Mesh.read(tmp_path / "both.ply").volume == pytest.approx(LEFT_MM3, rel=2e-5)
+    report = json.loads((tmp_path / "both.json").read_text())
+    assert report["job"] == "bottom.nc" and [entry["job"] for entry in report["set_ups_before"]] == ["top.nc"]
+    # the same in two runs, by a file: faces are as good, edges as the voxels know them
+    assert run(capsys, top, "--stock", "box:0,0,-10,60,40,0", *common, "--output", tmp_path / "top.vdb")[0] == 0
+    status, _ = run(capsys, bottom, "--stock", tmp_path / "top.vdb", "--turn", "x180,top=0", *common[:2], "--output",
+                    tmp_path / "two.ply")
+    assert status == 0
+    assert swarf.Mesh.read(tmp_path / "two.ply").volume == pytest.approx(LEFT_MM3, rel=2e-3)
+
+
+def test_command_line_mistakes(tmp_path, capsys):
+    top = tmp_path / "top.nc"
+    top.write_text(TOP)
+    common = ("--stock", "box:0,0,-10,60,40,0", "--tool", "1=" + TOOLS[1], "--voxel", VOXEL)
+    with pytest.raises(SystemExit) as exit_info:
+        run(capsys, top, *common, "--turn", "x180", "--turn", "y180")
+    assert exit_info.value.code == 2 and "given twice for one set-up" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        run(capsys, top, *common, "--turn", "upside-down")
+    assert "'upside-down' is no turn" in capsys.readouterr().err
+    status, errors = run(capsys, top, *common, "--then", tmp_path / "none.nc")
+    assert status == 2 and "none.nc" in errors
+    status, errors = run(capsys, top, *common, "--then", top, "--holder", "7=SK40-ER16,stickout=35")
+    assert status == 2 and "there is no tool 7" in errors

@@ -1,0 +1,382 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Stocks from one set-up to the next, against closed forms: a slotted block, turned over and slotted again. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "test.h"
+
+static const double pi = 3.14159265358979323846, voxel = 0.2;
+static const swarf_box block = {{0.03, 0.01, -6.02}, {20.04, 12.05, 0.01}};
+
+enum { SLOT_Y = 6, SLOT_R = 2, SLOT_Z = -2 };
+
+/* A cut along a line that goes through the part, by a flat cutter of radius 2. */
+typedef struct job {
+    swarf_cutter *cutter;
+    swarf_program *program;
+    swarf_tool tool;
+} job;
+
+static job make_job(const double from[3], const double to[3])
+{
+    job j = {0};
+    const swarf_section section = {.tool = 1};
+    CHECK_OK(swarf_cutter_parse("flat:d=4,l=30", &j.cutter));
+    CHECK_OK(swarf_program_create(from, &j.program));
+    CHECK_OK(swarf_program_add_operation(j.program, "slot"));
+    CHECK_OK(swarf_program_set_section(j.program, &section));
+    CHECK_OK(swarf_program_add_line(j.program, SWARF_MOVE_FEED, to, 100, 7));
+    j.tool = (swarf_tool){1, 0, j.cutter};
+    return j;
+}
+
+static void end_job(job *j)
+{
+    swarf_program_release(j->program);
+    swarf_cutter_release(j->cutter);
+}
+
+static job first_job(void)
+{
+    return make_job((double[]){-5, SLOT_Y, SLOT_Z}, (double[]){25, SLOT_Y, SLOT_Z});
+}
+
+static void play(swarf_stock *stock, const job *j)
+{
+    swarf_simulation *played = NULL;
+    CHECK_OK(swarf_stock_simulate(stock, j->program, 0, swarf_program_move_count(j->program), &j->tool, 1, NULL, NULL,
+                                  &played));
+    swarf_simulation_destroy(played);
+}
+
+static swarf_stock *make_block(const double edge)
+{
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = edge;
+    swarf_stock *stock = NULL;
+    if (!CHECK_OK(swarf_stock_create_box(&block, &options, &stock))) exit(test_end());
+    return stock;
+}
+
+/* Signed distance to the slotted block: an outline in y and z, extruded along x. */
+static double first_distance(const double p[3])
+{
+    const double corner[8][2] = {{block.lo[1], block.lo[2]},     {block.hi[1], block.lo[2]}, {block.hi[1], block.hi[2]},
+                                 {SLOT_Y + SLOT_R, block.hi[2]}, {SLOT_Y + SLOT_R, SLOT_Z},  {SLOT_Y - SLOT_R, SLOT_Z},
+                                 {SLOT_Y - SLOT_R, block.hi[2]}, {block.lo[1], block.hi[2]}};
+    double least = INFINITY;
+    for (int i = 0; i < 8; i++) {
+        const double *a = corner[i], *b = corner[(i + 1) % 8];
+        const double u[2] = {b[0] - a[0], b[1] - a[1]}, v[2] = {p[1] - a[0], p[2] - a[1]};
+        const double t = fmin(1, fmax(0, (u[0] * v[0] + u[1] * v[1]) / (u[0] * u[0] + u[1] * u[1])));
+        least = fmin(least, hypot(v[0] - t * u[0], v[1] - t * u[1]));
+    }
+    const int in_block = p[1] > block.lo[1] && p[1] < block.hi[1] && p[2] > block.lo[2] && p[2] < block.hi[2];
+    const int in_slot = fabs(p[1] - SLOT_Y) < SLOT_R && p[2] > SLOT_Z;
+    const double outline = in_block && !in_slot ? -least : least;
+    const double ends = fmax(block.lo[0] - p[0], p[0] - block.hi[0]);
+    return outline <= 0 && ends <= 0 ? fmax(outline, ends) : hypot(fmax(outline, 0), fmax(ends, 0));
+}
+
+static swarf_placement make_placement(const double angle[3], const double shift[3])
+{
+    double r[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rows[12];
+    for (int axis = 0; axis < 3; axis++) { /* about x, then y, then z */
+        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+        for (int k = 0; k < 3; k++) {
+            const double ra = r[a][k], rb = r[b][k];
+            r[a][k] = cos(angle[axis]) * ra - sin(angle[axis]) * rb;
+            r[b][k] = sin(angle[axis]) * ra + cos(angle[axis]) * rb;
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        memcpy(rows + 4 * i, r[i], sizeof r[i]);
+        rows[4 * i + 3] = shift[i];
+    }
+    swarf_placement made = swarf_placement_identity();
+    CHECK_OK(swarf_placement_create(rows, &made));
+    return made;
+}
+
+static swarf_stock *place(swarf_stock *stock, const swarf_placement *placement, const swarf_surface *surface,
+                          double edge, int expected)
+{
+    swarf_place_options options = swarf_place_options_default();
+    options.surface = surface;
+    options.moves = SIZE_MAX;
+    options.voxel_mm = edge;
+    swarf_stock *placed = NULL;
+    int lossless = -1;
+    if (!CHECK_OK(swarf_stock_place(stock, placement, &options, NULL, &placed, &lossless))) exit(test_end());
+    CHECK(lossless == expected);
+    return placed;
+}
+
+static uint64_t hash_of(swarf_stock *stock)
+{
+    uint64_t hash = 0;
+    CHECK_OK(swarf_stock_hash(stock, &hash));
+    return hash;
+}
+
+static double volume_of(swarf_stock *stock)
+{
+    double volume = NAN;
+    CHECK_OK(swarf_stock_volume(stock, &volume));
+    return volume;
+}
+
+/* All 24 ways to lie on an axis, by any shift: there, the old values; and back, the old bits. */
+static void check_quarters(void)
+{
+    test_random random = test_random_begin(20261122);
+    for (int cut = 0; cut < 2; cut++) {
+        swarf_stock *stock = make_block(2 * voxel);
+        job j = first_job();
+        if (cut) play(stock, &j);
+        const uint64_t hash = hash_of(stock);
+        const double volume = volume_of(stock);
+        int ways = 0;
+        for (int turn = 0; turn < 64; turn++) {
+            const double angle[3] = {(turn & 3) * pi / 2, (turn >> 2 & 3) * pi / 2, (turn >> 4) * pi / 2};
+            if (turn >> 2 & 2) continue; /* about y by 0 or a quarter: 32, of them 24 differ */
+            double shift[3];
+            for (int k = 0; k < 3; k++) shift[k] = test_random_in(&random, -50, 50);
+            const swarf_placement there = make_placement(angle, shift), back = swarf_placement_inverse(&there);
+            swarf_stock *placed = place(stock, &there, NULL, 0, 1), *again = place(placed, &back, NULL, 0, 1);
+            CHECK(hash_of(again) == hash);
+            CHECK_NEAR(volume_of(placed), volume, 1e-7 * volume); /* integrated in another order */
+            for (int i = 0; i < 50; i++) {
+                double p[3], q[3];
+                float was, is;
+                for (int k = 0; k < 3; k++) p[k] = test_random_in(&random, block.lo[k] - 1, block.hi[k] + 1);
+                swarf_placement_point(&there, p, q);
+                CHECK_OK(swarf_stock_sample(stock, p, 1, &was));
+                CHECK_OK(swarf_stock_sample(placed, q, 1, &is));
+                CHECK_NEAR(is, was, 1e-5);
+            }
+            swarf_stock_destroy(placed);
+            swarf_stock_destroy(again);
+            ways++;
+        }
+        CHECK(ways == 32);
+        swarf_stock_destroy(stock);
+        end_job(&j);
+    }
+}
+
+/* The faces of a block that was never read are still made when it was turned and cut. */
+static void check_untouched(void)
+{
+    swarf_stock *turned = make_block(voxel), *plain = make_block(voxel);
+    job j = first_job();
+    const swarf_placement over = make_placement((double[]){pi, 0, 0}, (double[]){0, 0, 0});
+    swarf_stock *there = place(turned, &over, NULL, 0, 1);
+    job k = make_job((double[]){-5, -SLOT_Y, -SLOT_Z - 4}, (double[]){25, -SLOT_Y, -SLOT_Z - 4});
+    play(there, &k); /* from above: y -8 .. -4, z above -2, all of it */
+    CHECK_NEAR(volume_of(there), volume_of(plain) - 20.01 * 4 * 6.03, 0.5);
+    play(turned, &j);
+    swarf_stock *cut = place(turned, &over, NULL, 0, 1);
+    CHECK_NEAR(volume_of(cut), volume_of(turned), 1e-7 * volume_of(turned));
+    swarf_surface *surface = NULL;
+    CHECK_OK(swarf_surface_create(cut, k.program, &k.tool, 1, NULL, &surface)); /* a block that was cut is none */
+    swarf_surface_release(surface);
+    swarf_stock_destroy(turned);
+    swarf_stock_destroy(plain);
+    swarf_stock_destroy(there);
+    swarf_stock_destroy(cut);
+    end_job(&j);
+    end_job(&k);
+}
+
+typedef struct off {
+    double band; /* greatest difference of a voxel from the true distance, in voxels, within a voxel of the surface */
+    size_t count;
+} off;
+
+/* Every voxel near the surface against the closed form. */
+static off compare_field(swarf_stock *placed, const swarf_placement *back)
+{
+    off found = {0};
+    const double edge = swarf_stock_voxel(placed);
+    size_t cubes = 0;
+    CHECK_OK(swarf_stock_changed(placed, 0, NULL, 0, &cubes));
+    swarf_box *boxes = malloc((cubes + 1) * sizeof *boxes);
+    double *points = malloc(3 * sizeof(double) * 32768);
+    float *values = malloc(sizeof(float) * 32768);
+    CHECK_OK(swarf_stock_changed(placed, 0, boxes, cubes, &cubes));
+    for (size_t c = 0; c < cubes; c++) {
+        size_t count = 0;
+        double near = INFINITY;
+        for (int i = 0; i < 32768; i++) {
+            const int at[3] = {i >> 10, i >> 5 & 31, i & 31};
+            double p[3];
+            for (int k = 0; k < 3; k++) p[k] = boxes[c].lo[k] + (at[k] + 0.5) * edge;
+            memcpy(points + 3 * count++, p, sizeof p);
+            if (i == 0 || i == 32767 || i == 16912) {
+                swarf_placement_point(back, p, p);
+                near = fmin(near, fabs(first_distance(p)));
+            }
+        }
+        if (near > 40 * edge) continue;
+        CHECK_OK(swarf_stock_sample(placed, points, count, values));
+        for (size_t i = 0; i < count; i++) {
+            double p[3];
+            swarf_placement_point(back, points + 3 * i, p);
+            const double truth = first_distance(p);
+            if (fabs(truth) > edge) continue;
+            found.band = fmax(found.band, fabs((double)values[i] - truth) / edge);
+            found.count++;
+        }
+    }
+    free(boxes);
+    free(points);
+    free(values);
+    CHECK(found.count > 1000);
+    return found;
+}
+
+/* What any other turn costs: with the exact surface, from the field alone, and trilinear values beside. */
+static void check_cost(void)
+{
+    swarf_stock *stock = make_block(voxel);
+    job j = first_job();
+    swarf_surface *surface = NULL;
+    CHECK_OK(swarf_surface_create(stock, j.program, &j.tool, 1, NULL, &surface));
+    play(stock, &j);
+    double trilinear = 0;
+    test_random random = test_random_begin(5);
+    for (int n = 0; n < 50000; n++) { /* what interpolating would have given: anywhere near the slot's edges */
+        float value;
+        const double p[3] = {test_random_in(&random, 1, 19), test_random_in(&random, 3.5, 8.5),
+                             test_random_in(&random, -2.5, 0.3)};
+        CHECK_OK(swarf_stock_sample(stock, p, 1, &value));
+        if (fabs(first_distance(p)) < voxel)
+            trilinear = fmax(trilinear, fabs((double)value - first_distance(p)) / voxel);
+    }
+    CHECK(trilinear > 0.1);
+    const double angle[3][3] = {{pi, 0, 0}, {0, 0, 0.3}, {0.5, -0.4, 0.7}};
+    for (int i = 0; i < 3; i++) {
+        const swarf_placement there = make_placement(angle[i], (double[]){3.3, -70.7, 12.1}),
+                              back = swarf_placement_inverse(&there);
+        swarf_stock *exact = place(stock, &there, surface, i ? 0 : 0.13, 0),
+                    *plain = place(stock, &there, NULL, 0.2001, 0);
+        const off with = compare_field(exact, &back), without = compare_field(plain, &back);
+        CHECK(with.band < 0.02);
+        CHECK(without.band < 0.6);
+        printf("turn %d: field off by %.4f voxels with the surface, %.3f without, %.3f if interpolated\n", i, with.band,
+               without.band, trilinear);
+        const double volume = volume_of(exact), truth = 20.01 * (12.04 * 6.03 - 4 * 2.01);
+        CHECK_NEAR(volume, truth, 1e-3 * truth);
+        swarf_stock_destroy(exact);
+        swarf_stock_destroy(plain);
+    }
+    swarf_surface_release(surface);
+    swarf_stock_destroy(stock);
+    end_job(&j);
+}
+
+/* Turned over and cut again: every vertex of the mesh on the true surface of both set-ups, and it tells of which. */
+static void check_chain(const double angle[3], int lossless)
+{
+    const swarf_placement over = make_placement(angle, (double[]){1, 2, -3}), back = swarf_placement_inverse(&over);
+    swarf_stock *stock = make_block(voxel);
+    job top = first_job();
+    swarf_surface *first = NULL, *second = NULL;
+    CHECK_OK(swarf_surface_create(stock, top.program, &top.tool, 1, NULL, &first));
+    play(stock, &top);
+    swarf_stock *turned = place(stock, &over, first, 0, lossless);
+    double middle[3] = {10, 6, -6};
+    swarf_placement_point(&over, middle, middle);
+    const double way[2] = {cos(1.1), sin(1.1)}, depth = middle[2] - 1.5; /* into what was the underside */
+    job bottom = make_job((double[]){middle[0] - 30 * way[0], middle[1] - 30 * way[1], depth},
+                          (double[]){middle[0] + 30 * way[0], middle[1] + 30 * way[1], depth});
+    CHECK_OK(swarf_surface_create_next(first, SIZE_MAX, &over, bottom.program, &bottom.tool, 1, NULL, &second));
+    play(turned, &bottom);
+    swarf_contour_options options = swarf_contour_options_default();
+    options.surface = second;
+    options.moves = SIZE_MAX;
+    options.error_mm = 0.001;
+    swarf_mesh *mesh = NULL;
+    if (!CHECK_OK(swarf_mesh_contour(turned, &options, NULL, &mesh, NULL))) return;
+    CHECK(swarf_mesh_topology(mesh).closed && swarf_mesh_topology(mesh).nonmanifold_edges == 0);
+    const swarf_triangles t = swarf_mesh_triangles(mesh);
+    double worst = 0;
+    for (size_t i = 0; i < t.vertex_count; i++) {
+        double p[3];
+        for (size_t k = 0; k < 3; k++) p[k] = (double)t.xyz[3 * i + k];
+        const double across = fabs((p[0] - middle[0]) * -way[1] + (p[1] - middle[1]) * way[0]) - SLOT_R;
+        const double slot = fmax(across, depth - p[2]);
+        swarf_placement_point(&back, p, p);
+        worst = fmax(worst, fabs(fmax(first_distance(p), -slot)) / voxel);
+    }
+    CHECK(worst < 0.01);
+    printf("chain: vertices off by %.5f voxels, %zu triangles\n", worst, t.triangle_count);
+    size_t seen[2] = {0}, shape = 0;
+    swarf_surface_point *points = malloc((t.triangle_count + 1) * sizeof *points);
+    CHECK_OK(swarf_mesh_origins(mesh, second, SIZE_MAX, 0, NULL, points));
+    for (size_t i = 0; i < t.triangle_count; i++) {
+        int set_up;
+        int64_t move;
+        swarf_surface_origin(second, points[i].move, &set_up, &move);
+        CHECK(move >= -1 && (move == -1 ? set_up == 1 : set_up < 2 && move == 0));
+        if (move == -1)
+            shape++;
+        else
+            seen[set_up & 1]++;
+    }
+    CHECK(seen[0] > 3 && seen[1] > 3 && shape > 5);
+    free(points);
+    swarf_mesh_release(mesh);
+    swarf_surface_release(first);
+    swarf_surface_release(second);
+    swarf_stock_destroy(turned);
+    swarf_stock_destroy(stock);
+    end_job(&top);
+    end_job(&bottom);
+}
+
+static void check_errors(void)
+{
+    swarf_placement placement;
+    double rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};
+    CHECK_FAILS(swarf_placement_create(rows, &placement), SWARF_ERROR_ARGUMENT, "mirrors");
+    rows[10] = 1.1;
+    CHECK_FAILS(swarf_placement_create(rows, &placement), SWARF_ERROR_ARGUMENT, "skews or scales");
+    rows[10] = 1;
+    rows[3] = NAN;
+    CHECK_FAILS(swarf_placement_create(rows, &placement), SWARF_ERROR_ARGUMENT, "row 0, column 3 is not finite");
+    rows[3] = 2e6;
+    CHECK_FAILS(swarf_placement_create(rows, &placement), SWARF_ERROR_ARGUMENT, "shifted by 2e+06 mm in x");
+
+    swarf_stock *stock = make_block(1), *placed = NULL;
+    const swarf_placement turn = make_placement((double[]){0, 0, 0.3}, (double[]){0, 0, 0});
+    swarf_place_options options = swarf_place_options_default();
+    options.voxel_mm = -1;
+    CHECK_FAILS(swarf_stock_place(stock, &turn, &options, NULL, &placed, NULL), SWARF_ERROR_ARGUMENT, "voxel size -1");
+    options.voxel_mm = 0.001;
+    options.memory_limit = 1000000;
+    CHECK_FAILS(swarf_stock_place(stock, &turn, &options, NULL, &placed, NULL), SWARF_ERROR_MEMORY, "fits");
+    job j = make_job((double[]){-30, 6, -10}, (double[]){40, 6, -10});
+    swarf_cutter *wide = NULL;
+    CHECK_OK(swarf_cutter_parse("flat:d=40,l=30", &wide));
+    j.tool.cutter = wide;
+    play(stock, &j);
+    CHECK_FAILS(swarf_stock_place(stock, &turn, NULL, NULL, &placed, NULL), SWARF_ERROR_GEOMETRY, "nothing is left");
+    CHECK(placed == NULL);
+    swarf_cutter_release(wide);
+    swarf_stock_destroy(stock);
+    end_job(&j);
+}
+
+int main(void)
+{
+    check_quarters();
+    check_untouched();
+    check_cost();
+    check_chain((double[]){pi, 0, 0}, 1);
+    check_chain((double[]){pi + 0.05, 0.03, 0.4}, 0);
+    check_errors();
+    return test_end();
+}
