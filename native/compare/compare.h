@@ -11,8 +11,13 @@
 typedef struct swarf_slot_difference {
     float excess, gouge;
 } swarf_slot_difference;
-swarf_status swarf_compare_slots(const swarf_stock *stock, const swarf_solid *design, const swarf_progress *progress,
-                                 double from, double to, swarf_slot_difference *slots, swarf_comparison *out);
+/** `settled` (may be NULL) has 1 for each slot whose differences are known already. */
+swarf_status swarf_compare_slots(const swarf_stock *stock, const swarf_solid *design, const uint8_t *settled,
+                                 const swarf_progress *progress, double from, double to, swarf_slot_difference *slots,
+                                 swarf_comparison *out);
+
+/** Whether a box lies within the voxels of a layout. */
+int swarf_layout_holds(const swarf_tree_layout *layout, const swarf_box *box);
 
 /** A point that is out of tolerance. */
 typedef struct swarf_sample {
@@ -37,6 +42,9 @@ typedef struct swarf_points {
     float *distance; /**< from the design, positive outside */
     uint32_t *triangle;
     uint8_t *kind; /**< SWARF_POINT_EDGE; _UNTOUCHED where it lies on the first stock, whatever its distance */
+    size_t leaf_count;
+    size_t *slot;  /**< of each leaf, SWARF_NODE_SLOTS to a node */
+    size_t *first; /**< point of each leaf, and one more: their number */
 } swarf_points;
 
 /** What was measured once: a stock's surface against a design and the design's against the stock. It asks for no
@@ -70,6 +78,11 @@ void swarf_points_free(swarf_points *points);
 swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double least,
                                  const swarf_progress *progress, double from, double to, swarf_samples *out,
                                  double *area);
+
+/** The slots whose volumes follow from the points: marks them in `settled` (all 0 before, one per slot) and fills their
+ *  measured->slots; the others of these stay 0. on_stock has distances. */
+swarf_status swarf_match_slots(const swarf_stock *stock, const swarf_solid *design, const swarf_measured *measured,
+                               uint8_t *settled);
 
 /** Gather the samples, all of them beyond tolerance, into clusters and share out the volumes. */
 swarf_status swarf_cluster_samples(const swarf_tree_layout *layout, const swarf_samples *on_stock,

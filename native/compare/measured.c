@@ -27,24 +27,18 @@ struct work {
     double voxel;
 };
 
-/* Points are in the order of leaves, so that one's find tells how far to look for the next. */
 static swarf_status measure_piece(void *context, size_t index)
 {
     const struct work *work = context;
     const swarf_points *points = work->points;
     const size_t end = (index + 1) * PIECE < points->count ? (index + 1) * PIECE : points->count;
-    swarf_solid_hit hit = {.place = SIZE_MAX};
+    swarf_solid_hit hit = {.place = SIZE_MAX}; /* points are in the order of leaves: near each other */
     swarf_probe probe = {0};
     if (work->first) probe = swarf_probe_begin(work->first);
     for (size_t i = index * PIECE; i < end; i++) {
-        double point[3], at[3], square = 0;
-        for (size_t k = 0; k < 3; k++) {
-            point[k] = points->xyz[3 * i + k];
-            if (hit.place != SIZE_MAX) square += (point[k] - hit.point[k]) * (point[k] - hit.point[k]);
-        }
-        const double reach = hit.place == SIZE_MAX ? INFINITY : sqrt(square) * (1 + 1e-12) + 1e-300;
-        swarf_solid_find(work->design, point, reach, &hit);
-        if (hit.place == SIZE_MAX) swarf_solid_find(work->design, point, INFINITY, &hit);
+        double point[3], at[3];
+        for (size_t k = 0; k < 3; k++) point[k] = points->xyz[3 * i + k];
+        swarf_solid_find_next(work->design, point, &hit);
         points->distance[i] = (float)hit.distance;
         points->triangle[i] = work->design->source[hit.place];
         if (!work->first) continue;
@@ -64,10 +58,16 @@ static swarf_status measure(swarf_measured *m, const swarf_stock *stock, const s
     SWARF_TRY(swarf_parallel_for((m->on_stock.count + PIECE - 1) / PIECE, measure_piece, &work, progress, 0.1, 0.5));
     const double spacing = fmax(voxel, sqrt(design->facts.area_mm2 / most_design_points));
     SWARF_TRY(swarf_sample_design(stock, design, spacing, voxel, progress, 0.5, 0.6, &m->on_design, &m->design_mm2));
-    /* 8 bytes for 512 voxels */
+    /* 9 bytes for 512 voxels */
     m->slots = calloc(swarf_layout_nodes(&m->layout) * SWARF_NODE_SLOTS, sizeof *m->slots);
-    if (!m->slots) return swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
-    return swarf_compare_slots(stock, design, progress, 0.6, 1, m->slots, &m->volumes);
+    uint8_t *settled = calloc(swarf_layout_nodes(&m->layout) * SWARF_NODE_SLOTS, sizeof *settled);
+    swarf_status status = SWARF_OK;
+    if (!m->slots || !settled) status = swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
+    if (status == SWARF_OK) status = swarf_match_slots(stock, design, m, settled);
+    if (status == SWARF_OK)
+        status = swarf_compare_slots(stock, design, settled, progress, 0.6, 1, m->slots, &m->volumes);
+    free(settled);
+    return status;
 }
 
 swarf_status swarf_measure(const swarf_stock *stock, const swarf_solid *design, const swarf_stock *first,

@@ -7,6 +7,7 @@
 #include "compare/compare.h"
 #include "solid/solid.h"
 #include "stock/leaf.h"
+#include "stock/probe.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,7 +32,7 @@ struct work {
     swarf_samples *parts; /* one per piece of work */
     const swarf_solid *design;
     double spacing, least;
-    swarf_points *points; /* where the parts go */
+    swarf_points *points; /* where the parts go; first counts within a part until they are there */
     size_t *starts;       /* of each part in them */
     double *area;         /* per piece */
 };
@@ -61,11 +62,27 @@ static void load_border(const struct work *work, const swarf_leaf *leaf, float o
             if (layout->occupied[node * SWARF_NODE_WORDS + (slot >> 6)] >> (slot & 63) & 1) tile = -tile;
         }
         for (int x = lo[0]; x < hi[0]; x++)
-            for (int y = lo[1]; y < hi[1]; y++)
-                for (int z = lo[2]; z < hi[2]; z++)
-                    out[(x + 1) * stride[0] + (y + 1) * stride[1] + z + 1] =
-                        values ? values[(x & 7) * 64 + (y & 7) * 8 + (z & 7)] : tile;
+            for (int y = lo[1]; y < hi[1]; y++) {
+                float *row = out + (x + 1) * stride[0] + (y + 1) * stride[1] + 1;
+                const float *from = values ? values + (x & 7) * 64 + (y & 7) * 8 : NULL;
+                if (from && side[2] == 0)
+                    memcpy(row, from, SWARF_LEAF_DIM * sizeof *row);
+                else
+                    for (int z = lo[2]; z < hi[2]; z++) row[z] = from ? from[z & 7] : tile;
+            }
     }
+}
+
+/* Bit k of row (x, y) of the border: whether its value k along z is in the material. */
+static void find_signs(const float border[EDGE * EDGE * EDGE], uint32_t sign[EDGE][EDGE])
+{
+    for (int x = 0; x < EDGE; x++)
+        for (int y = 0; y < EDGE; y++) {
+            const float *row = border + x * stride[0] + y * stride[1];
+            uint32_t bits = 0;
+            for (int z = 0; z < EDGE; z++) bits |= (uint32_t)(row[z] < 0) << z;
+            sign[x][y] = bits;
+        }
 }
 
 static void gradient_at(const float *value, double out[3])
@@ -125,16 +142,25 @@ static swarf_status sample_leaves(void *context, size_t index)
     const struct work *work = context;
     const size_t end = (index + 1) * LEAVES < work->leaf_count ? (index + 1) * LEAVES : work->leaf_count;
     float border[EDGE * EDGE * EDGE];
+    uint32_t sign[EDGE][EDGE];
     size_t room = 0;
     for (size_t i = index * LEAVES; i < end; i++) {
+        work->points->slot[i] = work->leaves[i].node * SWARF_NODE_SLOTS + work->leaves[i].slot;
+        work->points->first[i] = work->parts[index].count;
         load_border(work, &work->leaves[i], border);
-        for (int voxel = 0; voxel < SWARF_LEAF_SIZE; voxel++) {
-            const int at[3] = {(voxel >> 6) + 1, (voxel >> 3 & 7) + 1, (voxel & 7) + 1};
-            const float *value = border + at[0] * stride[0] + at[1] * stride[1] + at[2];
-            for (int axis = 0; axis < 3; axis++) {
-                if ((*value < 0) == (value[stride[axis]] < 0)) continue;
-                const swarf_sample sample = make_crossing(work, &work->leaves[i], border, at, axis);
-                SWARF_TRY(add_sample(&work->parts[index], &room, &sample));
+        find_signs(border, sign);
+        for (int row = 0; row < SWARF_LEAF_DIM * SWARF_LEAF_DIM; row++) {
+            int at[3] = {(row >> 3) + 1, (row & 7) + 1, 0};
+            const uint32_t own = sign[at[0]][at[1]];
+            const uint32_t crossed[3] = {own ^ sign[at[0] + 1][at[1]], own ^ sign[at[0]][at[1] + 1], own ^ own >> 1};
+            const uint32_t in_leaf = ((1u << SWARF_LEAF_DIM) - 1) << 1;
+            for (uint32_t left = (crossed[0] | crossed[1] | crossed[2]) & in_leaf; left; left &= left - 1) {
+                at[2] = __builtin_ctz(left);
+                for (int axis = 0; axis < 3; axis++) {
+                    if (!(crossed[axis] >> at[2] & 1)) continue;
+                    const swarf_sample sample = make_crossing(work, &work->leaves[i], border, at, axis);
+                    SWARF_TRY(add_sample(&work->parts[index], &room, &sample));
+                }
             }
         }
     }
@@ -163,19 +189,16 @@ static swarf_status join_parts(const swarf_samples *parts, size_t count, swarf_s
     return SWARF_OK;
 }
 
-static swarf_status points_create(size_t count, swarf_points *out)
+static swarf_status reserve_points(swarf_points *points, size_t count)
 {
-    swarf_points points = {.count = count,
-                           .xyz = malloc((3 * count + 1) * sizeof *points.xyz),
-                           .area = malloc((count + 1) * sizeof *points.area),
-                           .distance = malloc((count + 1) * sizeof *points.distance),
-                           .triangle = malloc((count + 1) * sizeof *points.triangle),
-                           .kind = malloc(count + 1)};
-    if (!points.xyz || !points.area || !points.distance || !points.triangle || !points.kind) {
-        swarf_points_free(&points);
+    points->count = count;
+    points->xyz = malloc((3 * count + 1) * sizeof *points->xyz);
+    points->area = malloc((count + 1) * sizeof *points->area);
+    points->distance = malloc((count + 1) * sizeof *points->distance);
+    points->triangle = malloc((count + 1) * sizeof *points->triangle);
+    points->kind = malloc(count + 1);
+    if (!points->xyz || !points->area || !points->distance || !points->triangle || !points->kind)
         return swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory for %zu points", count);
-    }
-    *out = points;
     return SWARF_OK;
 }
 
@@ -186,6 +209,8 @@ void swarf_points_free(swarf_points *points)
     free(points->distance);
     free(points->triangle);
     free(points->kind);
+    free(points->slot);
+    free(points->first);
 }
 
 static swarf_status spread_part(void *context, size_t index)
@@ -193,6 +218,8 @@ static swarf_status spread_part(void *context, size_t index)
     const struct work *work = context;
     const swarf_samples *part = &work->parts[index];
     const swarf_points *points = work->points;
+    const size_t end = (index + 1) * LEAVES < work->leaf_count ? (index + 1) * LEAVES : work->leaf_count;
+    for (size_t i = index * LEAVES; i < end; i++) points->first[i] += work->starts[index];
     for (size_t i = 0, at = work->starts[index]; i < part->count; i++, at++) {
         memcpy(points->xyz + 3 * at, part->samples[i].xyz, 3 * sizeof *points->xyz);
         points->area[at] = part->samples[i].area;
@@ -201,17 +228,40 @@ static swarf_status spread_part(void *context, size_t index)
     return SWARF_OK;
 }
 
-static swarf_status spread_parts(struct work *work, size_t pieces, swarf_points *out)
+static swarf_status sample(struct work *work, size_t pieces, const swarf_progress *progress, double from, double to)
 {
+    swarf_points *points = work->points;
+    points->leaf_count = work->leaf_count;
+    points->slot = malloc((work->leaf_count + 1) * sizeof *points->slot);
+    points->first = malloc((work->leaf_count + 1) * sizeof *points->first);
+    if (!work->parts || !work->starts || !points->slot || !points->first)
+        return swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory");
+    SWARF_TRY(swarf_parallel_for(pieces, sample_leaves, work, progress, from, to));
     size_t total = 0;
     for (size_t i = 0; i < pieces; i++) {
         work->starts[i] = total;
         total += work->parts[i].count;
     }
-    swarf_points points;
-    SWARF_TRY(points_create(total, &points));
-    work->points = &points;
-    const swarf_status status = swarf_parallel_for(pieces, spread_part, work, NULL, 0, 1);
+    points->first[work->leaf_count] = total;
+    SWARF_TRY(reserve_points(points, total));
+    return swarf_parallel_for(pieces, spread_part, work, NULL, 0, 1);
+}
+
+swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *progress, double from, double to,
+                                swarf_points *out)
+{
+    swarf_points points = {0};
+    struct work work = {.stock = stock, .layout = swarf_tree_get_layout(stock->tree), .points = &points};
+    swarf_leaf *leaves = NULL;
+    SWARF_TRY(swarf_stock_leaves(stock, &leaves, &work.leaf_count));
+    work.leaves = leaves;
+    const size_t pieces = (work.leaf_count + LEAVES - 1) / LEAVES;
+    work.parts = calloc(pieces + 1, sizeof *work.parts);
+    work.starts = malloc((pieces + 1) * sizeof *work.starts);
+    const swarf_status status = sample(&work, pieces, progress, from, to);
+    free_parts(work.parts, pieces);
+    free(work.starts);
+    free(leaves);
     if (status == SWARF_OK)
         *out = points;
     else
@@ -219,60 +269,37 @@ static swarf_status spread_parts(struct work *work, size_t pieces, swarf_points 
     return status;
 }
 
-swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *progress, double from, double to,
-                                swarf_points *out)
-{
-    struct work work = {.stock = stock, .layout = swarf_tree_get_layout(stock->tree)};
-    swarf_leaf *leaves = NULL;
-    SWARF_TRY(swarf_stock_leaves(stock, &leaves, &work.leaf_count));
-    work.leaves = leaves;
-    const size_t pieces = (work.leaf_count + LEAVES - 1) / LEAVES;
-    work.parts = calloc(pieces + 1, sizeof *work.parts);
-    work.starts = malloc((pieces + 1) * sizeof *work.starts);
-    swarf_status status = SWARF_OK;
-    if (!work.parts || !work.starts) status = swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory");
-    if (status == SWARF_OK) status = swarf_parallel_for(pieces, sample_leaves, &work, progress, from, to);
-    if (status == SWARF_OK) status = spread_parts(&work, pieces, out);
-    free_parts(work.parts, pieces);
-    free(work.starts);
-    free(leaves);
-    return status;
-}
+/* What one piece of the design's triangles finds. */
+struct finder {
+    const struct work *work;
+    swarf_probe probe;
+    swarf_samples *found;
+    size_t room;
+};
 
-/* Trilinear, beyond the layout the background. */
-static double stock_value(const struct work *work, const double point[3])
+static swarf_status try_point(struct finder *f, size_t place, const double point[3], double area)
 {
-    int32_t low[3];
-    double part[3], sum = 0;
+    const struct work *work = f->work;
+    double at[3], value = work->layout->background; /* beyond the layout */
+    int within = 1;
     for (int k = 0; k < 3; k++) {
-        const double at = (point[k] - work->layout->origin[k]) / work->layout->voxel;
-        if (!(at >= -1 && at < (double)work->layout->count[k] * SWARF_NODE_DIM)) return work->layout->background;
-        low[k] = (int32_t)floor(at);
-        part[k] = at - low[k];
+        at[k] = (point[k] - work->layout->origin[k]) * f->probe.scale;
+        within &= at[k] >= -1 && at[k] < (double)work->layout->count[k] * SWARF_NODE_DIM;
     }
-    for (int i = 0; i < 8; i++) {
-        const int32_t ijk[3] = {low[0] + (i >> 2), low[1] + (i >> 1 & 1), low[2] + (i & 1)};
-        sum += (i >> 2 ? part[0] : 1 - part[0]) * (i >> 1 & 1 ? part[1] : 1 - part[1]) *
-               (i & 1 ? part[2] : 1 - part[2]) * (double)swarf_stock_value(work->stock, ijk);
-    }
-    return sum;
-}
-
-static swarf_status try_point(const struct work *work, swarf_samples *found, size_t *room, size_t place,
-                              const double point[3], double area)
-{
-    const double value = stock_value(work, point);
+    if (within) value = (double)swarf_probe_point(&f->probe, at);
     if (fabs(value) <= work->least) return SWARF_OK;
+    if (work->design->state[place] == SOLID_CROSSING && !swarf_solid_bounds(work->design, place, point))
+        return SWARF_OK;
     swarf_sample sample = {
         .value = (float)-value, .area = (float)area, .triangle = work->design->source[place], .missing = 1};
     for (int k = 0; k < 3; k++) sample.xyz[k] = (float)point[k];
-    return add_sample(found, room, &sample);
+    return add_sample(f->found, &f->room, &sample);
 }
 
 /* Points in rows along the longest edge, in the middle of pieces of equal area. */
-static swarf_status sample_triangle(const struct work *work, swarf_samples *found, size_t *room, size_t place,
-                                    double *area)
+static swarf_status sample_triangle(struct finder *f, size_t place, double *area)
 {
+    const struct work *work = f->work;
     const swarf_corners *t = &work->design->corners[place];
     double edge[3], normal[3];
     int base = 0;
@@ -298,7 +325,7 @@ static swarf_status sample_triangle(const struct work *work, swarf_samples *foun
             const double along = ((double)column + 0.5) / (double)columns;
             double point[3];
             for (int k = 0; k < 3; k++) point[k] = up * top[k] + (1 - up) * (a[k] + along * ((double)b[k] - a[k]));
-            SWARF_TRY(try_point(work, found, room, place, point, own * 2 * (1 - up) / (double)rows / (double)columns));
+            SWARF_TRY(try_point(f, place, point, own * 2 * (1 - up) / (double)rows / (double)columns));
         }
     }
     return SWARF_OK;
@@ -309,10 +336,9 @@ static swarf_status sample_triangles(void *context, size_t index)
     const struct work *work = context;
     const size_t count = work->design->tree.count;
     const size_t end = (index + 1) * TRIANGLES < count ? (index + 1) * TRIANGLES : count;
-    size_t room = 0;
+    struct finder finder = {.work = work, .probe = swarf_probe_begin(work->stock), .found = &work->parts[index]};
     for (size_t place = index * TRIANGLES; place < end; place++)
-        if (work->design->state[place] == SOLID_PLAIN)
-            SWARF_TRY(sample_triangle(work, &work->parts[index], &room, place, &work->area[index]));
+        if (work->design->state[place] == SOLID_PLAIN) SWARF_TRY(sample_triangle(&finder, place, &work->area[index]));
     return SWARF_OK;
 }
 

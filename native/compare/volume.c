@@ -15,7 +15,7 @@
 static const double reach_voxels = 1.5;
 
 /* Pieces of work: eighths of a node. */
-enum { CUBE = 64, CUBES_PER_NODE = 8 };
+enum { CUBE = 64, CUBES_PER_NODE = 8, CUBE_SLOTS = CUBE / SWARF_LEAF_DIM };
 
 struct sums {
     double excess, gouge, design; /* in voxels */
@@ -26,6 +26,7 @@ struct work {
     const swarf_tree_layout *layout;
     swarf_field field;
     struct sums *sums;            /* per cube */
+    const uint8_t *settled;       /* per slot; may be NULL */
     swarf_slot_difference *slots; /* may be NULL */
 };
 
@@ -102,17 +103,34 @@ static double leaf_fill(const float *values, float scale)
     return total;
 }
 
+/* Number in its node of slot i of those in a cube. */
+static unsigned slot_in(const struct cube_work *cube, const int32_t corner[3], int slots, int i)
+{
+    int low[3];
+    for (int k = 0; k < 3; k++) low[k] = (corner[k] - cube->origin[k]) / SWARF_LEAF_DIM;
+    return (unsigned)((low[0] + i / (slots * slots)) << 8 | (low[1] + i / slots % slots) << 4 | (low[2] + i % slots));
+}
+
+/* Whether a cube has a slot that is not settled. */
+static int is_wanted(void *context, const int32_t corner[3], int edge)
+{
+    const struct cube_work *cube = context;
+    const uint8_t *settled = cube->work->settled + cube->node * SWARF_NODE_SLOTS;
+    const int slots = edge / SWARF_LEAF_DIM;
+    for (int i = 0; i < slots * slots * slots; i++)
+        if (!settled[slot_in(cube, corner, slots, i)]) return 1;
+    return 0;
+}
+
 static swarf_status add_cube(void *context, const int32_t corner[3], int edge, const float *values, int inside)
 {
     struct cube_work *cube = context;
     const struct work *work = cube->work;
     const float scale = (float)(1 / work->layout->voxel);
     const int slots = edge / SWARF_LEAF_DIM;
-    int low[3];
-    for (int k = 0; k < 3; k++) low[k] = (corner[k] - cube->origin[k]) / SWARF_LEAF_DIM;
     for (int i = 0; i < slots * slots * slots; i++) {
-        const int x = low[0] + i / (slots * slots), y = low[1] + i / slots % slots, z = low[2] + i % slots;
-        const unsigned slot = (unsigned)(x << 8 | y << 4 | z);
+        const unsigned slot = slot_in(cube, corner, slots, i);
+        if (work->settled && work->settled[cube->node * SWARF_NODE_SLOTS + slot]) continue;
         const int occupied =
             (int)(work->layout->occupied[cube->node * SWARF_NODE_WORDS + (slot >> 6)] >> (slot & 63) & 1);
         const float *stock = occupied ? swarf_tree_leaf(work->tree, cube->node, slot) : NULL;
@@ -138,12 +156,17 @@ static swarf_status compare_cube(void *context, size_t index)
     const int32_t corner[3] = {cube.origin[0] + (part >> 2) * CUBE, cube.origin[1] + (part >> 1 & 1) * CUBE,
                                cube.origin[2] + (part & 1) * CUBE};
     SWARF_TRY(swarf_field_walk(&work->field, corner, CUBE, add_cube, &cube));
+    for (int i = 0; work->settled && i < CUBE_SLOTS * CUBE_SLOTS * CUBE_SLOTS; i++) {
+        const size_t slot = cube.node * SWARF_NODE_SLOTS + slot_in(&cube, corner, CUBE_SLOTS, i);
+        if (!work->settled[slot]) continue;
+        cube.sums.excess += (double)work->slots[slot].excess;
+        cube.sums.gouge += (double)work->slots[slot].gouge;
+    }
     work->sums[index] = cube.sums;
     return SWARF_OK;
 }
 
-/* Whether a box lies within the voxels of a layout. */
-static int is_within(const swarf_tree_layout *layout, const swarf_box *box)
+int swarf_layout_holds(const swarf_tree_layout *layout, const swarf_box *box)
 {
     for (int k = 0; k < 3; k++)
         if (box->lo[k] < layout->origin[k] ||
@@ -152,12 +175,15 @@ static int is_within(const swarf_tree_layout *layout, const swarf_box *box)
     return 1;
 }
 
-swarf_status swarf_compare_slots(const swarf_stock *stock, const swarf_solid *design, const swarf_progress *progress,
-                                 double from, double to, swarf_slot_difference *slots, swarf_comparison *out)
+swarf_status swarf_compare_slots(const swarf_stock *stock, const swarf_solid *design, const uint8_t *settled,
+                                 const swarf_progress *progress, double from, double to, swarf_slot_difference *slots,
+                                 swarf_comparison *out)
 {
-    struct work work = {.slots = slots, .tree = stock->tree, .layout = swarf_tree_get_layout(stock->tree)};
+    struct work work = {
+        .settled = settled, .slots = slots, .tree = stock->tree, .layout = swarf_tree_get_layout(stock->tree)};
     const double voxel = work.layout->voxel, cubic = voxel * voxel * voxel;
-    work.field = (swarf_field){.solid = design, .voxel = voxel, .reach = reach_voxels * voxel};
+    work.field = (swarf_field){
+        .solid = design, .voxel = voxel, .reach = reach_voxels * voxel, .wanted = settled ? is_wanted : NULL};
     for (int k = 0; k < 3; k++) work.field.origin[k] = work.layout->origin[k];
     const swarf_solid_facts facts = swarf_solid_get_facts(design);
     swarf_comparison result = {.design_mm3 = facts.volume_mm3};
@@ -174,7 +200,7 @@ swarf_status swarf_compare_slots(const swarf_stock *stock, const swarf_solid *de
     }
     free(work.sums);
     /* what reaches beyond the voxels of the stock is in none of the cubes */
-    if (!is_within(work.layout, &facts.box)) result.gouge_mm3 += fmax(0, facts.volume_mm3 - seen);
+    if (!swarf_layout_holds(work.layout, &facts.box)) result.gouge_mm3 += fmax(0, facts.volume_mm3 - seen);
     if (status == SWARF_OK) *out = result;
     return status;
 }
@@ -184,7 +210,7 @@ swarf_status swarf_compare_volume(swarf_stock *stock, const swarf_solid *design,
 {
     SWARF_REQUIRE(stock && design && out, "compare: stock, design or output missing");
     SWARF_TRY(swarf_stock_enter_read(stock));
-    const swarf_status status = swarf_compare_slots(stock, design, progress, 0, 1, NULL, out);
+    const swarf_status status = swarf_compare_slots(stock, design, NULL, progress, 0, 1, NULL, out);
     swarf_stock_leave(stock);
     return status;
 }

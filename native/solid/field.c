@@ -322,6 +322,7 @@ static void fill_leaf(struct walker *w, const int32_t corner[3], const struct cu
 /* `far`: no point of the cube is farther from the surface. */
 static swarf_status walk(struct walker *w, const int32_t corner[3], int edge, double far)
 {
+    if (w->field->wanted && !w->field->wanted(w->context, corner, edge)) return SWARF_OK;
     const struct cube cube = cube_of(w->field, corner, edge);
     swarf_nearest nearest;
     swarf_solid_nearest(w->solid, cube.middle, far, &nearest);

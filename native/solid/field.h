@@ -11,11 +11,15 @@ extern "C" {
 
 enum { FIELD_LEAF = 8, FIELD_LEAF_SIZE = FIELD_LEAF * FIELD_LEAF * FIELD_LEAF };
 
+/** Whether a cube of voxels, its low corner at `corner`, is to be seen at all. */
+typedef int (*swarf_wanted_fn)(void *context, const int32_t corner[3], int edge);
+
 typedef struct swarf_field {
     const swarf_solid *solid;
-    double origin[3]; /**< centre of voxel (0, 0, 0), mm */
-    double voxel;     /**< mm */
-    double reach;     /**< mm: values farther from the surface are +-reach; at least one voxel */
+    double origin[3];       /**< centre of voxel (0, 0, 0), mm */
+    double voxel;           /**< mm */
+    double reach;           /**< mm: values farther from the surface are +-reach; at least one voxel */
+    swarf_wanted_fn wanted; /**< asked before a cube is looked at, with the context of the walk; NULL: all are */
 } swarf_field;
 
 /** A cube of voxels with its low corner at `corner`. `values` (NULL where the surface is nowhere within reach) are

@@ -5,6 +5,7 @@
 #include "solid/tree.h"
 
 #include <math.h>
+#include <string.h>
 
 /* A group to be looked at, and from how far away it may hold something. */
 struct visit {
@@ -79,18 +80,36 @@ double swarf_corners_closest(const swarf_corners *triangle, const double point[3
     return best;
 }
 
-/* Squares of the distances to eight boxes. */
-static void box_squares(const swarf_group *group, const float at[3], float square[TREE_WIDTH])
+/* Four numbers in one register of any processor; wider ones would need variants of their own and win little here. */
+typedef float four __attribute__((vector_size(16)));
+typedef int32_t four_bits __attribute__((vector_size(16)));
+
+enum { HALVES = TREE_WIDTH / 4 };
+
+/* Where positive, else 0. */
+static inline four positive(four x)
 {
-    float sum[TREE_WIDTH] = {0};
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < TREE_WIDTH; i++) {
-            const float below = group->lo[k][i] - at[k], above = at[k] - group->hi[k][i];
-            float away = below > above ? below : above;
-            away = away > 0 ? away : 0;
-            sum[i] += away * away;
+    return (four)((x > 0) & (four_bits)x);
+}
+
+/* Squares of the distances to eight boxes; bit i of the result is set where that of box i is no more than `limit`. */
+static inline unsigned box_squares(const swarf_group *group, const float at[3], float limit, float square[TREE_WIDTH])
+{
+    unsigned near = 0;
+    for (int half = 0; half < HALVES; half++) {
+        four sum = {0, 0, 0, 0};
+        for (int k = 0; k < 3; k++) {
+            four lo, hi;
+            memcpy(&lo, group->lo[k] + 4 * half, sizeof lo);
+            memcpy(&hi, group->hi[k] + 4 * half, sizeof hi);
+            const four away = positive(lo - at[k]) + positive(at[k] - hi); /* one of them is 0 */
+            sum += away * away;
         }
-    for (int i = 0; i < TREE_WIDTH; i++) square[i] = sum[i];
+        const four_bits own = sum <= limit;
+        memcpy(square + 4 * half, &sum, sizeof sum);
+        for (int i = 0; i < 4; i++) near |= ((unsigned)own[i] & 1) << (4 * half + i);
+    }
+    return near;
 }
 
 /* Greatest square in float that a box within `square` can show. */
@@ -110,7 +129,6 @@ void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *cor
         const double own = fabs(point[k]) * TREE_SLACK;
         slack = own > slack ? own : slack;
     }
-    nearest->place = SIZE_MAX;
     float limit = square_limit(nearest->square, slack);
     struct visit stack[MOST_VISITS];
     int depth = 1;
@@ -119,14 +137,17 @@ void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *cor
         const struct visit now = stack[--depth];
         if (now.square > limit) continue;
         float square[TREE_WIDTH];
-        box_squares(&tree->groups[tree->first[now.level] + now.group], at, square);
+        unsigned near = box_squares(&tree->groups[tree->first[now.level] + now.group], at, limit, square);
         const size_t below = now.level ? tree->first[now.level] - tree->first[now.level - 1] : tree->count;
+        const size_t boxes = below - now.group * TREE_WIDTH;
+        if (boxes < TREE_WIDTH) near &= (1u << boxes) - 1; /* those that are missing are infinitely far away */
         if (now.level == 0) {
-            for (size_t i = 0, place = now.group * TREE_WIDTH; i < TREE_WIDTH && place < below; i++, place++) {
+            for (; near; near &= near - 1) {
+                const int i = __builtin_ctz(near);
                 if (square[i] > limit) continue;
-                swarf_nearest here = {.place = place};
-                here.square = swarf_corners_closest(&corners[place], point, here.point, &here.feature);
-                if (!(here.square < nearest->square) || (bounds && !bounds(context, place, here.point))) continue;
+                swarf_nearest here = {.place = now.group * TREE_WIDTH + (size_t)i};
+                here.square = swarf_corners_closest(&corners[here.place], point, here.point, &here.feature);
+                if (!(here.square < nearest->square) || (bounds && !bounds(context, here.place, here.point))) continue;
                 *nearest = here;
                 limit = square_limit(here.square, slack);
             }
@@ -134,11 +155,11 @@ void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *cor
         }
         /* the nearest last, to be looked into first */
         const int base = depth;
-        for (size_t i = 0; i < TREE_WIDTH && now.group * TREE_WIDTH + i < below; i++) {
-            if (square[i] > limit) continue;
+        for (; near; near &= near - 1) {
+            const int i = __builtin_ctz(near);
             int k = depth++;
             for (; k > base && stack[k - 1].square < square[i]; k--) stack[k] = stack[k - 1];
-            stack[k] = (struct visit){square[i], now.level - 1, now.group * TREE_WIDTH + i};
+            stack[k] = (struct visit){square[i], now.level - 1, now.group * TREE_WIDTH + (size_t)i};
         }
     }
 }

@@ -282,21 +282,43 @@ static int counts(const void *context, size_t place, const double point[3])
 
 void swarf_solid_nearest(const swarf_solid *solid, const double point[3], double reach, swarf_nearest *out)
 {
-    out->square = reach * reach;
+    *out = (swarf_nearest){.square = reach * reach, .place = SIZE_MAX};
     swarf_box_tree_nearest(&solid->tree, solid->corners, point, solid->plain ? NULL : counts, solid, out);
     if (out->place != SIZE_MAX || reach < INFINITY) return;
-    out->square = INFINITY; /* where triangles cross just so that each seems to be inside: any of them will do */
+    *out = (swarf_nearest){
+        .square = INFINITY,
+        .place = SIZE_MAX}; /* where triangles cross just so that each seems to be inside: any of them will do */
     swarf_box_tree_nearest(&solid->tree, solid->corners, point, NULL, solid, out);
+}
+
+static void take_hit(const swarf_solid *solid, const double point[3], const swarf_nearest *nearest,
+                     swarf_solid_hit *out)
+{
+    out->place = nearest->place;
+    if (nearest->place == SIZE_MAX) return;
+    memcpy(out->point, nearest->point, sizeof out->point);
+    out->distance = sqrt(nearest->square) * swarf_solid_sign(solid, point, nearest);
 }
 
 void swarf_solid_find(const swarf_solid *solid, const double point[3], double reach, swarf_solid_hit *out)
 {
     swarf_nearest nearest;
     swarf_solid_nearest(solid, point, reach, &nearest);
-    out->place = nearest.place;
-    if (nearest.place == SIZE_MAX) return;
-    memcpy(out->point, nearest.point, sizeof out->point);
-    out->distance = sqrt(nearest.square) * swarf_solid_sign(solid, point, &nearest);
+    take_hit(solid, point, &nearest, out);
+}
+
+void swarf_solid_find_next(const swarf_solid *solid, const double point[3], swarf_solid_hit *hit)
+{
+    if (hit->place != SIZE_MAX) { /* no other triangle farther away than the last one is worth a look */
+        swarf_nearest nearest = {.place = hit->place};
+        nearest.square = swarf_corners_closest(&solid->corners[hit->place], point, nearest.point, &nearest.feature);
+        if (solid->plain || counts(solid, hit->place, nearest.point)) {
+            swarf_box_tree_nearest(&solid->tree, solid->corners, point, solid->plain ? NULL : counts, solid, &nearest);
+            take_hit(solid, point, &nearest, hit);
+            return;
+        }
+    }
+    swarf_solid_find(solid, point, INFINITY, hit);
 }
 
 struct distance_work {
@@ -307,7 +329,7 @@ struct distance_work {
     uint32_t *triangle;
 };
 
-/* Points that one piece of work measures: one after the other, each looks no farther than the last one's find. */
+/* Points that one piece of work measures, one after the other. */
 enum { POINTS = 1024 };
 
 static swarf_status measure_points(void *context, size_t index)
@@ -316,15 +338,7 @@ static swarf_status measure_points(void *context, size_t index)
     const size_t end = (index + 1) * POINTS < work->count ? (index + 1) * POINTS : work->count;
     swarf_solid_hit hit = {.place = SIZE_MAX};
     for (size_t i = index * POINTS; i < end; i++) {
-        const double *p = work->points + 3 * i;
-        double reach = INFINITY;
-        if (hit.place != SIZE_MAX) {
-            reach = 0;
-            for (int k = 0; k < 3; k++) reach += (p[k] - hit.point[k]) * (p[k] - hit.point[k]);
-            reach = sqrt(reach) * (1 + 1e-12) + 1e-300;
-        }
-        swarf_solid_find(work->solid, p, reach, &hit);
-        if (hit.place == SIZE_MAX) swarf_solid_find(work->solid, p, INFINITY, &hit);
+        swarf_solid_find_next(work->solid, work->points + 3 * i, &hit);
         work->distance[i] = hit.distance;
         if (work->triangle) work->triangle[i] = work->solid->source[hit.place];
     }

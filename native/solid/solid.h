@@ -48,6 +48,9 @@ typedef struct swarf_solid_hit {
 
 /** Look no farther than `reach` (INFINITY: find the closest point wherever it is). Any thread. */
 void swarf_solid_find(const swarf_solid *solid, const double point[3], double reach, swarf_solid_hit *out);
+/** The closest point wherever it is; *hit holds that of a point nearby (place SIZE_MAX: none is known), which makes it
+ *  quick. Where several triangles are as close it may tell of another one. Any thread. */
+void swarf_solid_find_next(const swarf_solid *solid, const double point[3], swarf_solid_hit *hit);
 /** By the winding number: slower than swarf_solid_find(), and needs nothing to be near. Any thread. */
 int swarf_solid_inside(const swarf_solid *solid, const double point[3]);
 

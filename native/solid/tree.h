@@ -52,7 +52,7 @@ void swarf_box_tree_free(swarf_box_tree *tree);
 
 /** Where the triangles come closest to a point. */
 typedef struct swarf_nearest {
-    double square; /**< of the distance; set it to the square of the farthest distance of interest before */
+    double square; /**< of the distance */
     double point[3];
     size_t place; /**< SIZE_MAX: none as near as that */
     int feature;  /**< 0 face, 1 .. 3 corner 0 .. 2, 4 .. 6 edge from corner 0 .. 2 to the next */
@@ -61,8 +61,9 @@ typedef struct swarf_nearest {
 /** Whether a triangle counts at the point of it that is closest. */
 typedef int (*swarf_bounds_fn)(const void *context, size_t place, const double point[3]);
 
-/** The closest triangle (the first found of equally close ones). `bounds` (may be NULL) is asked of each that would be
- *  closer than all before. */
+/** The closest triangle (the first found of equally close ones), if it is closer than *nearest is before: a triangle
+ *  already known, or place SIZE_MAX and the square of how far to look. `bounds` (may be NULL) is asked of each that
+ *  would be closer than all before. */
 void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *corners, const double point[3],
                             swarf_bounds_fn bounds, const void *context, swarf_nearest *nearest);
 
