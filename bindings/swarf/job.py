@@ -38,4 +38,5 @@ class Job:
     notes: list[str] = field(default_factory=list)
     holders: dict[int, str] = field(default_factory=dict)  #: what holds each tool, for people; the cutters have it
     accepted: list[Acceptance] = field(default_factory=list)  #: findings that the job's document accepts
+    fixtures: list[Mesh] = field(default_factory=list)  #: closed: clamps, a vice, the table
     teeth: dict[int, int] = field(default_factory=dict)  #: cutting edges around each tool, where they are known

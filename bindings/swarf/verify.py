@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Optional, Sequence
 
 from . import accept as accepting
@@ -55,11 +55,23 @@ class Verification:
     complete: bool = False  #: whether material that no move went to counts as an error
     loads: Optional[dict[str, memoryview]] = None  #: Check.loads, None: not asked for
     limits: Limits = field(default_factory=dict)
+    region: Optional[Any] = None  #: box that the deviation was measured in
 
     @property
     def passed(self) -> bool:
         """Whether nothing of class error was found that is not accepted."""
         return not any(finding.severity == "error" and finding.accepted is None for finding in self.findings)
+
+    def judge(self, tolerance: float, *, accept: Sequence[Acceptance] = (),
+              progress: Optional[Callable[[float], Any]] = None) -> Verification:
+        """The same measurements by another tolerance (mm) for both sides, without simulating or measuring again."""
+        job = self.result.job
+        deviation = self.deviation.judge(excess=tolerance, gouge=tolerance, allowance=self.allowance, region=self.region,
+                                         program=job.program, tools=job.tools, progress=progress)
+        found = [finding for finding in self.findings if finding.cluster is None]
+        found += [_cluster_finding(job, cluster, self.complete) for cluster in deviation.clusters]
+        return replace(self, deviation=deviation, tolerance=(tolerance, tolerance),
+                       findings=settle(found, [*job.accepted, *accept]))
 
     def scene(self) -> Scene:
         """A Scene of what is left of the stock."""
@@ -113,8 +125,9 @@ def verify(
     ``allowance`` is material that is meant to be left. Material left where no move went is a warning, with
     ``complete`` an error. Rapids through material, shanks and holders that touch it, and all else that Stock.check()
     looks for are findings too, as are moves that cannot be simulated (turned axes) and operations that remove nothing;
-    ``fixtures`` and ``clearance`` are handed to it. ``loads`` measures what each move asks of its tool; beyond
-    ``limits`` (see swarf.loads) it is a warning. Findings that ``accept`` or the job's document knows do not fail.
+    ``fixtures``, with those of the job, and ``clearance`` are handed to it. ``loads`` measures what each move asks of its
+    tool; beyond ``limits`` (see swarf.loads) it is a warning. Findings that ``accept`` or the job's document knows do not
+    fail.
     ValueError without a design or moves; GeometryError where the design encloses nothing; whatever make_stock() and
     Stock.check() raise.
     """
@@ -137,6 +150,7 @@ def verify(
 
     started = time.perf_counter()
     solid = timed("design", lambda report: Solid(mesh, progress=report))
+    fixtures = [*job.fixtures, *fixtures]
     clamps = [Solid(fixture) for fixture in fixtures]
     first = timed("stock", lambda report: make_stock(job.stock, voxel=voxel, resolution=resolution, progress=report))
     stock = first.copy()
@@ -150,16 +164,23 @@ def verify(
     seconds["total"] = time.perf_counter() - started
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
-                        limits=limits)
-    made.findings = [*findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
-                     *_design_findings(solid, first, mesh), *_fixture_findings(first, fixtures, clamps),
-                     *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
-    for idle in accepting.apply([*job.accepted, *accept], made.findings):
-        made.findings.append(Verdict("note", f"nothing is found any more of what is accepted because {idle.reason!r}",
-                                     "acceptance", idle.operation, idle.line or 0, place=idle.place))
-    order = ("error", "warning", "note")
-    made.findings.sort(key=lambda found: (found.accepted is not None, order.index(found.severity)))
+                        limits=limits, region=region)
+    found = [*findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
+             *_design_findings(solid, first, mesh), *fixture_findings(first, fixtures, clamps),
+             *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
+    made.findings = settle(found, [*job.accepted, *accept])
     return made
+
+
+def settle(findings: Sequence[Verdict], acceptances: Sequence[Acceptance]) -> list[Verdict]:
+    """Findings by what is accepted, whatever was accepted of them before: errors, warnings, notes, at last what is
+    accepted; a note on each acceptance that knows none. The findings that are given are left alone."""
+    settled = [replace(finding, accepted=None) for finding in findings if finding.kind != "acceptance"]
+    settled += [Verdict("note", f"nothing is found any more of what is accepted because {idle.reason!r}", "acceptance",
+                        idle.operation, idle.line or 0, place=idle.place)
+                for idle in accepting.apply(acceptances, settled)]
+    order = ("error", "warning", "note")
+    return sorted(settled, key=lambda found: (found.accepted is not None, order.index(found.severity)))
 
 
 def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:
@@ -220,7 +241,7 @@ def _design_findings(solid: Solid, first: Stock, mesh: Mesh) -> list[Verdict]:
     return found
 
 
-def _fixture_findings(first: Stock, fixtures: Sequence[Mesh], solids: Sequence[Solid]) -> list[Verdict]:
+def fixture_findings(first: Stock, fixtures: Sequence[Mesh], solids: Sequence[Solid]) -> list[Verdict]:
     """Fixtures that reach into the stock before anything is cut: they stand elsewhere, or the stock does. Looked for at
     their corners and the middles of their triangles, and at the corners of the stock's box."""
     found = []

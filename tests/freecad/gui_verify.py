@@ -47,6 +47,13 @@ class Verifying(PanelTest):
             [item.severity == "error" for item in found]
         errors.click()
         assert not any(tree.topLevelItem(row).isHidden() for row in range(len(found)))
+        kind = panel.findings.kind
+        kind.setCurrentIndex(kind.findData("gouge"))
+        assert [tree.topLevelItem(row).isHidden() for row in range(len(found))] == \
+            [item.kind != "gouge" for item in found]
+        kind.setCurrentIndex(0)
+        key(view, QtCore.Qt.Key_Right)
+        assert view.mark is None, "the mark of a finding stays where the stock has moved on"
         panel.bar._stops["finding"].setChecked(True)
         panel.player.seek(0)
         panel.player.set_speed(0.0)
@@ -65,6 +72,53 @@ class Verifying(PanelTest):
         assert panel.checking.found == found
         key(view, QtCore.Qt.Key_0, "0")
         pump(0.5)
+
+    def accepting(self, document, job):
+        """With a reason that is kept in the job, can be undone, and taken back."""
+        panel, page = self.panel, self.panel.findings
+        panel.tabs.setCurrentWidget(page)
+        found = list(panel.checking.found)
+        index = next(index for index, item in enumerate(found) if item.kind == "gouge")
+        page.tree.setCurrentItem(page.tree.topLevelItem(index))
+        assert page.accept.isEnabled() and not page.accept.isChecked() and page.reason.isHidden() is False
+        page.accept.click()
+        assert page.reason.isVisible() and not page.give.isEnabled(), "no acceptance without a reason"
+        page.reason.setText("the wave is wanted")
+        screenshot("panel-accepting.png")
+        undo = document.UndoCount
+        page.give.click()
+        taken = [item for item in panel.checking.found if item.accepted == "the wave is wanted"]
+        assert [item.kind for item in taken] == ["gouge"] and panel.checking.found[-1] is taken[0]
+        assert document.UndoCount == undo + 1 and len(job.SwarfAccepted) == 1
+        assert panel.tabs.tabText(panel.tabs.indexOf(page)) == "Findings (%d)" % (len(found) - 1)
+        assert "the wave is wanted" in page.tree.topLevelItem(len(found) - 1).text(0)
+        assert not any(mark[0] == taken[0].place for mark in panel.timeline._findings), "it is marked no more"
+        pump(1.0)
+        assert panel.banner.isHidden(), "an acceptance is no change of the job: " + panel.banner.text.text()
+        screenshot("panel-accepted.png")
+        page.run.click()
+        wait_for(lambda: not panel.checking.pending, "checking again")
+        assert [item.kind for item in panel.checking.found if item.accepted] == ["gouge"], "found again, accepted again"
+        document.undo()
+        wait_for(lambda: not [item for item in panel.checking.found if item.accepted], "undoing")
+        document.redo()
+        wait_for(lambda: [item for item in panel.checking.found if item.accepted], "doing it again")
+        page.tree.setCurrentItem(page.tree.topLevelItem(len(found) - 1))
+        assert page.accept.isChecked()
+        page.accept.click()
+        wait_for(lambda: panel.checking.found == found, "taking it back")
+        assert job.SwarfAccepted == []
+
+    def stopping(self):
+        """At the first error, where the panel then stands."""
+        panel, page = self.panel, self.panel.findings
+        panel.player.seek(0)
+        self.settle(0.0)
+        page.stop.setChecked(True)
+        page.run.click()
+        wait_for(lambda: not panel.checking.pending, "the checks, stopped or not")
+        assert not panel.checking.outcome.stopped, "nothing collides: there is nothing to stop at"
+        page.stop.setChecked(False)
 
     def deviation(self):
         """Colours, legend, value under the mouse, pins, another tolerance."""
@@ -96,6 +150,16 @@ class Verifying(PanelTest):
             (red.getRgb(), green.getRgb(), blue.getRgb())
         mouse(view, "move", *pixel(floor))
         assert abs(view.hover - 0.2) < 0.01
+        panel.tabs.setCurrentWidget(panel.deviation)
+        bars = panel.deviation.bars
+        shown = bars._shown
+        assert abs(sum(shown.areas) - panel.checking.outcome.deviation.area) < 0.2 * sum(shown.areas)  # less the edges
+        assert max(range(len(shown.areas)), key=shown.areas.__getitem__) in (31, 32), "most of it is well"
+        assert shown.areas[0] > 100 and shown.areas[-1] > 500, "the wave and the pocket"
+        screenshot("panel-histogram.png")
+        picture, bar = bars.grab().toImage(), bars.bar(63)
+        assert picture.pixelColor(int(bar.center().x()), int(bar.bottom()) - 2).red() > 150, "the last bar is red"
+        assert panel.findChild(QtWidgets.QLabel, "SwarfDeviation-range").text().startswith("-2.0")
         panel.tabs.setCurrentWidget(panel.findings)
         assert len(view.pins) == len(panel.checking.found) == 3
         numbered = [panel.findings.tree.topLevelItem(row).text(0)[0] for row in range(3)]
@@ -115,8 +179,9 @@ class Verifying(PanelTest):
         self.redrawn()
         wide = colour(floor)
         assert wide.green() >= wide.red(), "with a wider tolerance the pocket is well"
-        wait_for(lambda: panel.checking.running, "checks with another tolerance")
-        wait_for(lambda: not panel.checking.running, "the end of the checks")
+        measured = panel.checking.outcome.verification.result
+        self.checked()
+        assert panel.checking.outcome.verification.result is measured, "nothing was cut or measured again"
         assert not [item for item in panel.checking.found if abs(abs(item.amount) - 0.2) < 0.01]
         application = QtWidgets.QApplication.instance()
         style = application.styleSheet()
@@ -135,8 +200,7 @@ class Verifying(PanelTest):
         assert panel.tools.colouring == "material" and view.legend is None, "without a model"
         panel.tools.open(True)
         panel.tools.tolerance.setValue(self.settings.TOLERANCE_MM)
-        wait_for(lambda: panel.checking.running, "checks with the first tolerance")
-        wait_for(lambda: not panel.checking.running, "the end of the checks")
+        self.checked()
         self.settle()
         key(view, QtCore.Qt.Key_0, "0")
         pump(0.5)
@@ -146,7 +210,8 @@ def check():
     """All of it."""
     test = Verifying()
     document, job = new_job("verify")
-    test.run((test.open, document, job), (test.findings,), (test.deviation,))
+    test.run((test.open, document, job), (test.findings,), (test.accepting, document, job), (test.stopping,),
+             (test.deviation,))
 
 
 start(check)

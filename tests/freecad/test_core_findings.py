@@ -41,7 +41,7 @@ def make(design=None):
 def run(data, listing, tolerance=0.05, progress=lambda done: False):
     from swarf_cam import checks
 
-    return findings.from_verdicts(checks.run(native.to_job(data), 0.5, tolerance, progress), listing)
+    return findings.from_verdicts(checks.run(native.to_job(data), 0.5, tolerance, progress).verdicts, listing)
 
 
 def test_a_rapid_into_material_is_found_where_the_tip_meets_the_top(swarf):
@@ -93,6 +93,82 @@ def test_checks_can_be_broken_off(swarf):
             run(data, listing, progress=lambda done, limit=limit: done >= limit)
 
 
+def test_another_tolerance_is_judged_without_cutting_again(swarf):
+    from swarf_cam import checks
+
+    data, listing = make(box_mesh(LO, (40.0, 20.0, -0.3)))
+    job = native.to_job(data)
+    first = checks.run(job, 0.5, 0.05, lambda done: False)
+    wide = checks.judge(first, 1.0, lambda done: False)
+    assert wide.verification.result is first.verification.result, "nothing was cut again"
+    again = checks.run(job, 0.5, 1.0, lambda done: False)
+    assert findings.from_verdicts(wide.verdicts, listing) == findings.from_verdicts(again.verdicts, listing)
+    assert wide.deviation.gouge_area < first.deviation.gouge_area
+    without = checks.run(native.to_job(make()[0]), 0.5, 0.05, lambda done: False)
+    assert checks.judge(without, 0.4, lambda done: False) is without and without.deviation is None
+
+
+def test_stopping_at_the_first_error(swarf):
+    from swarf_cam import checks
+
+    for design in (None, box_mesh(LO, HI)):
+        data, listing = make(design)
+        job, told = native.to_job(data), []
+        stopped = checks.run(job, 0.5, 0.05, told.append, stop=True)
+        assert stopped.stopped and stopped.deviation is None
+        assert [item.kind for item in stopped.verdicts if item.severity == "error"] == ["rapid"]
+        assert told == sorted(told)
+    data, listing = make(box_mesh(LO, HI))
+    data.operations = data.operations[1:]  # the slot alone, nothing collides
+    data.moves = program.build(data.operations)
+    told = []
+    whole = checks.run(native.to_job(data), 0.5, 0.05, told.append, stop=True)
+    assert not whole.stopped and whole.deviation is not None and told == sorted(told)
+
+
+def test_an_acceptance_knows_its_finding_and_no_worse_one(swarf):
+    from swarf_cam import checks
+
+    data, listing = make(box_mesh(LO, HI))
+    job = native.to_job(data)
+    outcome = checks.run(job, 0.5, 0.05, lambda done: False)
+    for verdict in outcome.verdicts:
+        entry = findings.acceptance(verdict, "seen", 0.5)
+        known, = native.to_accepted("Job", [entry])
+        assert [item for item in outcome.verdicts if known.knows(item)] == [verdict], entry
+        if "most" in entry:
+            worse = SimpleNamespace(**dict(vars(verdict), amount=1.2 * verdict.amount))
+            assert not known.knows(worse)
+    gouge = next(item for item in outcome.verdicts if item.kind == "gouge")
+    entries = native.to_accepted("Job", [findings.acceptance(gouge, "meant so", 0.5)])
+    settled = checks.accept(outcome, entries)
+    found = findings.from_verdicts(settled.verdicts, listing)
+    assert found[-1].accepted == "meant so" and found[-1].severity == "note" and gouge.accepted is None
+    assert found[-1] not in findings.worst_places(found, 9)
+    assert found[-1].text not in [text for _, _, text in findings.marks(found)
+                                  if sum(text == item.text for item in found) == 1]
+    idle = checks.accept(checks.accept(outcome, native.to_accepted("Job", [{"reason": "x", "kind": "load"}])), entries)
+    assert len(idle.verdicts) == len(outcome.verdicts), "a note on an idle acceptance goes with it"
+    assert findings.kinds(found) == list(dict.fromkeys(item.kind for item in found))
+
+
+def test_the_histogram_is_on_the_scale_of_the_legend(swarf):
+    from swarf_cam import checks
+    from swarf_cam.core import histogram
+
+    data, _ = make(box_mesh(LO, (40.0, 20.0, -0.3)))
+    outcome = checks.run(native.to_job(data), 0.5, 1.0, lambda done: False)
+    shown = histogram.of(outcome.deviation, 1.0)
+    top = max(range(len(shown.areas)), key=shown.areas.__getitem__)
+    assert shown.bounds(top)[0] <= 1e-9 and shown.bounds(top)[1] >= -1e-9, "sides and bottom fit"
+    # the slot's floor less a voxel and a half at its edges, with what the walls have at that depth
+    at = next(i for i in range(len(shown.areas)) if shown.bounds(i)[0] < -1.7 <= shown.bounds(i)[1])
+    assert (6 - 1.5) * (40 - 1.5) < sum(shown.areas[at - 1:at + 2]) < 6 * 40 + 3 * 0.125 * (2 * 40 + 6 * math.pi)
+    assert shown.bounds(0)[0] == -math.inf and shown.bounds(len(shown.areas) - 1)[1] == math.inf
+    assert max(shown.heights()) == 1.0 and min(shown.heights()) == 0.0
+    assert shown.heights()[at] == pytest.approx(math.sqrt(shown.areas[at] / max(shown.areas)))
+
+
 def test_order_marks_and_counts():
     listing = SimpleNamespace(begin=[0, 5, 9], line_of=lambda move: move // 5, operation_at=lambda move: 0)
     verdicts = [SimpleNamespace(severity=severity, text=severity, kind=kind, move=move, t=0.5, place=point,
@@ -107,7 +183,8 @@ def test_order_marks_and_counts():
     assert findings.counts(found) == {"error": 2, "warning": 1, "note": 1}
     assert [item.kind for item in findings.worst_places(found, 5)] == ["not reached", "gouge"]
     verdicts[2].accepted = "the old clamp"
-    assert findings.counts(findings.from_verdicts(verdicts, listing)) == {"error": 1, "warning": 1, "note": 2}
+    found = findings.from_verdicts(verdicts, listing)
+    assert findings.counts(found) == {"error": 1, "warning": 1, "note": 2} and found[-1].accepted == "the old clamp"
     together = [Finding("error", "a", place=1.0), Finding("note", "b", place=1.0)]
     assert [mark[1] for mark in findings.marks(together)] == ["note", "error"], "the worst is drawn last"
     overview = findings.from_overview([(3.0, "warning", "w"), (7.0, "error", "e")], listing)

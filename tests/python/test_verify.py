@@ -226,3 +226,18 @@ def test_fixtures_in_the_stock():
     assert any("fixture 1 reaches into the stock" in found.text for found in around.findings)
     beside = swarf.verify(job, DESIGN, voxel=0.5, loads=False, fixtures=[box((40.0, 0.0, -9.0), (50.0, 30.0, -4.0))])
     assert not beside.findings
+
+
+def test_a_verification_is_judged_again():
+    """Another tolerance gives what a whole run with it gives; what is accepted stays accepted."""
+    job = faced(1.0, gouge=0.3)
+    job.fixtures = [box((38.0, 10.0, -9.0), (50.0, 20.0, -4.0))]
+    accepted = swarf.accept.make({"reason": "the clamp is moved", "kind": "fixture"}, "here")
+    first = swarf.verify(job, DESIGN, tolerance=0.02, voxel=0.25, loads=False, accept=[accepted])
+    for tolerance in (0.1, 0.5):
+        judged = first.judge(tolerance, accept=[accepted])
+        again = swarf.verify(job, DESIGN, tolerance=tolerance, voxel=0.25, loads=False, accept=[accepted])
+        assert judged.findings == again.findings and judged.passed == again.passed == (tolerance == 0.5)
+        assert judged.tolerance == (tolerance, tolerance) and judged.result is first.result
+    assert any(finding.accepted for finding in judged.findings)
+    assert not any(finding.accepted for finding in first.judge(0.5).findings)

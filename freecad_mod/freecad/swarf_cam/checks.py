@@ -2,31 +2,91 @@
 """Is the program right? A job is played once more with all checks, and what is left held against its design. Imports
 no FreeCAD; any thread: it works on a stock of its own, so that the one that is watched can be played meanwhile."""
 
+from dataclasses import dataclass, replace
+from typing import Any
+
 from . import native
 
 # Where each stage begins and how much of the whole it is, about.
 STAGES = {"design": (0.0, 0.05), "stock": (0.05, 0.15), "cut": (0.2, 0.55), "compare": (0.75, 0.25)}
 
 
-def run(job, voxel_mm, tolerance_mm, progress):
-    """List of swarf Verdicts on a swarf.Job; without a design, or with one that encloses nothing, of the checks alone.
+@dataclass
+class Outcome:
+    """What the checks of a job came to. verdicts: swarf Verdicts. verification: swarf.verify.Verification, None without
+    a design that encloses something. stopped: at the first error, the rest was not looked at."""
+
+    verdicts: list
+    verification: Any = None
+    stopped: bool = False
+
+    @property
+    def deviation(self):
+        """The swarf.Deviation, or None."""
+        return self.verification.deviation if self.verification is not None else None
+
+
+def run(job, voxel_mm, tolerance_mm, progress, stop=False, clearance_mm=0.0):
+    """Outcome of a swarf.Job; what its document accepts is accepted. stop: at the first error.
 
     progress as in native.simulate(). MemoryError, swarf.Error.
     """
-    swarf = native.load()
-    from swarf.simulate import make_stock  # of the package, once it is known to be there
-    from swarf.verify import Verdict, findings_of, verify
-
-    def report(stage, fraction):
-        begin, share = STAGES[stage]
-        return progress(begin + share * fraction)
-
-    doubts = []
+    if stop:
+        outcome = _check(job, voxel_mm, [], _stages(progress, 0.0, 0.5), True, clearance_mm)
+        if outcome.stopped or job.design is None:
+            return outcome
+    swarf, report, doubts = native.load(), _stages(progress, 0.5 if stop else 0.0, 1.0), []
     if job.design is not None:
         try:
-            return verify(job, tolerance=tolerance_mm, voxel=voxel_mm, loads=False, progress=report).findings
+            made = swarf.verify(job, tolerance=tolerance_mm, voxel=voxel_mm, loads=False, clearance=clearance_mm,
+                                progress=report)
+            return Outcome(made.findings, made)
         except swarf.GeometryError as error:
-            doubts.append(Verdict("warning", str(error), "design"))
+            doubts.append(_doubt(str(error)))
+    return _check(job, voxel_mm, doubts, report, False, clearance_mm)
+
+
+def _stages(progress, first, last):
+    """What is told of stages as one fraction, from first to last."""
+    def report(stage, fraction):
+        begin, share = STAGES[stage]
+        return progress(first + (last - first) * (begin + share * fraction))
+    return report
+
+
+def _doubt(text):
+    from swarf.verify import Verdict  # of the package, once it is known to be there
+
+    return Verdict("warning", text, "design")
+
+
+def _check(job, voxel_mm, doubts, report, stop, clearance_mm):
+    swarf = native.load()
+    from swarf.simulate import make_stock
+    from swarf.verify import findings_of, fixture_findings, settle
+
     stock = make_stock(job.stock, voxel=voxel_mm, progress=lambda done: report("stock", done))
-    checked = stock.check(job.program, job.tools, teeth=job.teeth, progress=lambda done: report("cut", done))
-    return doubts + findings_of(job, checked, voxel_mm)
+    clamps = [swarf.Solid(fixture) for fixture in job.fixtures]
+    doubts += fixture_findings(stock, job.fixtures, clamps)
+    checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=clearance_mm, teeth=job.teeth, stop=stop,
+                          progress=lambda done: report("cut", done))
+    found = findings_of(job, checked, voxel_mm)
+    stopped = stop and any(item.severity == "error" for item in checked.findings)
+    return Outcome(settle(doubts + found, job.accepted), stopped=stopped)
+
+
+def judge(outcome, tolerance_mm, progress):
+    """The Outcome by another tolerance, without cutting or measuring again."""
+    if outcome.verification is None:
+        return outcome
+    made = outcome.verification.judge(tolerance_mm, progress=progress)
+    return Outcome(made.findings, made)
+
+
+def accept(outcome, acceptances):
+    """The Outcome by what is accepted now: a list of swarf Acceptances."""
+    from swarf.verify import settle
+
+    found = settle(outcome.verdicts, acceptances)
+    made = outcome.verification
+    return replace(outcome, verdicts=found, verification=None if made is None else replace(made, findings=found))

@@ -88,12 +88,12 @@ def hold(cutters, data):
     return texts, notes
 
 
-def to_accepted(data):
-    """swarf.accept.Acceptances of a JobData; JobError for an entry that is none."""
+def to_accepted(name, entries):
+    """swarf.accept.Acceptances of the entries in a job of this name; JobError for an entry that is none."""
     accept = importlib.import_module(load().__name__ + ".accept")
     try:
-        return [accept.make(entry, "the job '%s', acceptance %d" % (data.name, number))
-                for number, entry in enumerate(data.accepted, 1)]
+        return [accept.make(entry, "the job '%s', acceptance %d" % (name, number))
+                for number, entry in enumerate(entries, 1)]
     except ValueError as error:
         raise JobError(str(error)) from error
 
@@ -113,7 +113,7 @@ def to_job(data):
     return load().Job(name=data.name, program=to_program(data.moves), tools=cutters,
                       tool_names={number: name for number, (name, _) in data.tools.items()}, stock=stock,
                       design=to_mesh(data.design) if data.design else None, notes=list(data.notes) + doubts,
-                      teeth=dict(data.teeth), holders=holders, accepted=to_accepted(data))
+                      teeth=dict(data.teeth), holders=holders, accepted=to_accepted(data.name, data.accepted))
 
 
 @dataclass

@@ -13,8 +13,11 @@ SPEED = 50.0
 # Deviation from the design that is well, mm.
 TOLERANCE_MM, TOLERANCE_MIN_MM, TOLERANCE_MAX_MM = 0.05, 0.001, 10.0
 
-BOOLEANS = {"AutoPlay": True, "AutoCheck": True, "ShowCutter": True, "ShowPath": False, "Perspective": False,
-            "Occlusion": True, "Shadow": False}
+# How near holders may come to the stock before it is a warning, mm.
+CLEARANCE_MAX_MM = 100.0
+
+BOOLEANS = {"AutoPlay": True, "AutoCheck": True, "StopAtError": False, "ShowCutter": True, "ShowPath": False,
+            "Perspective": False, "Occlusion": True, "Shadow": False}
 
 
 def _group():
@@ -60,6 +63,16 @@ def tolerance():
 def set_tolerance(value):
     """Keep it."""
     _group().SetFloat("Tolerance", value)
+
+
+def clearance():
+    """How near holders may come to the stock before it is a warning, mm."""
+    return min(max(_group().GetFloat("Clearance", 0.0), 0.0), CLEARANCE_MAX_MM)
+
+
+def set_clearance(value):
+    """Keep it."""
+    _group().SetFloat("Clearance", value)
 
 
 def navigation():

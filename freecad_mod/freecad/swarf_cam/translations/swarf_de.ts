@@ -95,12 +95,48 @@
             <translation>, etwa {0:.1f} s für einmal Zerspanen</translation>
         </message>
         <message>
+            <source>98 % lie within</source>
+            <translation>98 % liegen in</translation>
+        </message>
+        <message>
+            <source>Accept</source>
+            <translation>Annehmen</translation>
+        </message>
+        <message>
+            <source>Accept a finding</source>
+            <translation>Einen Befund annehmen</translation>
+        </message>
+        <message>
+            <source>Accept a finding no more</source>
+            <translation>Einen Befund nicht mehr annehmen</translation>
+        </message>
+        <message>
+            <source>Accept the chosen finding, with a reason; or no more</source>
+            <translation>Den gewählten Befund mit einem Grund annehmen; oder nicht mehr</translation>
+        </message>
+        <message>
+            <source>Accepted because</source>
+            <translation>Angenommen, weil</translation>
+        </message>
+        <message>
+            <source>Accepted because: {0}</source>
+            <translation>Angenommen, weil: {0}</translation>
+        </message>
+        <message>
             <source>Accuracy</source>
             <translation>Genauigkeit</translation>
         </message>
         <message>
             <source>Again</source>
             <translation>Noch einmal</translation>
+        </message>
+        <message>
+            <source>All kinds</source>
+            <translation>Alle Arten</translation>
+        </message>
+        <message>
+            <source>Area of the surface by its deviation</source>
+            <translation>Fläche nach ihrer Abweichung</translation>
         </message>
         <message>
             <source>Axis that the section is across</source>
@@ -203,6 +239,10 @@
             <translation>Das Werkstück aufschneiden</translation>
         </message>
         <message>
+            <source>Cut too deep</source>
+            <translation>Zu tief geschnitten</translation>
+        </message>
+        <message>
             <source>Cutting '{0}' once ...</source>
             <translation>„{0}“ wird einmal zerspant ...</translation>
         </message>
@@ -213,6 +253,10 @@
         <message>
             <source>Darken corners when the view is at rest</source>
             <translation>Ecken abdunkeln, wenn die Ansicht ruht</translation>
+        </message>
+        <message>
+            <source>Deeper than the flutes</source>
+            <translation>Tiefer als die Schneiden</translation>
         </message>
         <message>
             <source>Deviation</source>
@@ -235,8 +279,16 @@
             <translation>Fehler</translation>
         </message>
         <message>
+            <source>FAILED</source>
+            <translation>NICHT BESTANDEN</translation>
+        </message>
+        <message>
             <source>FRONT</source>
             <translation>VORNE</translation>
+        </message>
+        <message>
+            <source>Feed</source>
+            <translation>Vorschub</translation>
         </message>
         <message>
             <source>Finding</source>
@@ -247,8 +299,20 @@
             <translation>Befunde</translation>
         </message>
         <message>
+            <source>Fixtures</source>
+            <translation>Spannmittel</translation>
+        </message>
+        <message>
             <source>Folder for the frames of the animation</source>
             <translation>Ordner für die Bilder der Animation</translation>
+        </message>
+        <message>
+            <source>Gouges</source>
+            <translation>Zu tief</translation>
+        </message>
+        <message>
+            <source>Holder</source>
+            <translation>Halter</translation>
         </message>
         <message>
             <source>How fast (Up, Down)</source>
@@ -259,6 +323,10 @@
             <translation>Wie fein ein Auftrag anfangs zerspant wird: mehr ist schärfer und langsamer</translation>
         </message>
         <message>
+            <source>Idle acceptances</source>
+            <translation>Annahmen ohne Befund</translation>
+        </message>
+        <message>
             <source>In the document: {0}</source>
             <translation>Im Dokument: {0}</translation>
         </message>
@@ -267,8 +335,16 @@
             <translation>Auftrag</translation>
         </message>
         <message>
+            <source>Judging ...</source>
+            <translation>Wird beurteilt ...</translation>
+        </message>
+        <message>
             <source>LEFT</source>
             <translation>LINKS</translation>
+        </message>
+        <message>
+            <source>Least and greatest</source>
+            <translation>Kleinste und größte</translation>
         </message>
         <message>
             <source>Line</source>
@@ -279,12 +355,24 @@
             <translation>Fräsen, live</translation>
         </message>
         <message>
+            <source>Loads</source>
+            <translation>Lasten</translation>
+        </message>
+        <message>
             <source>Look from the corner (0); 1 to 6: the sides</source>
             <translation>Von der Ecke ansehen (0); 1 bis 6: die Seiten</translation>
         </message>
         <message>
             <source>Material</source>
             <translation>Material</translation>
+        </message>
+        <message>
+            <source>Material left</source>
+            <translation>Material übrig</translation>
+        </message>
+        <message>
+            <source>Mean, root mean square</source>
+            <translation>Mittel, quadratisches Mittel</translation>
         </message>
         <message>
             <source>Milling simulation</source>
@@ -295,8 +383,24 @@
             <translation>Fräsen, live</translation>
         </message>
         <message>
+            <source>Model</source>
+            <translation>Modell</translation>
+        </message>
+        <message>
+            <source>Near misses</source>
+            <translation>Beinahe berührt</translation>
+        </message>
+        <message>
             <source>Not enough memory: {0} Choose larger voxels on the page Accuracy.</source>
             <translation>Zu wenig Speicher: {0} Wählen Sie auf der Seite Genauigkeit größere Voxel.</translation>
+        </message>
+        <message>
+            <source>Not reached</source>
+            <translation>Nicht erreicht</translation>
+        </message>
+        <message>
+            <source>Not simulated</source>
+            <translation>Nicht simuliert</translation>
         </message>
         <message>
             <source>Note</source>
@@ -355,6 +459,10 @@
             <translation>Abspielen oder anhalten (Leertaste)</translation>
         </message>
         <message>
+            <source>Plunges</source>
+            <translation>Eintauchen</translation>
+        </message>
+        <message>
             <source>Point</source>
             <translation>Punkt</translation>
         </message>
@@ -375,6 +483,10 @@
             <translation>RECHTS</translation>
         </message>
         <message>
+            <source>Rapids in material</source>
+            <translation>Eilgang im Material</translation>
+        </message>
+        <message>
             <source>Read the job again</source>
             <translation>Auftrag neu lesen</translation>
         </message>
@@ -385,6 +497,10 @@
         <message>
             <source>Removed</source>
             <translation>Abgetragen</translation>
+        </message>
+        <message>
+            <source>Result</source>
+            <translation>Ergebnis</translation>
         </message>
         <message>
             <source>Save an animation ...</source>
@@ -403,12 +519,20 @@
             <translation>Schatten, wenn die Ansicht ruht</translation>
         </message>
         <message>
+            <source>Shank</source>
+            <translation>Schaft</translation>
+        </message>
+        <message>
             <source>Show errors</source>
             <translation>Fehler zeigen</translation>
         </message>
         <message>
-            <source>Show notes</source>
-            <translation>Hinweise zeigen</translation>
+            <source>Show notes and what is accepted</source>
+            <translation>Hinweise und Angenommenes zeigen</translation>
+        </message>
+        <message>
+            <source>Show one kind of findings</source>
+            <translation>Eine Art von Befunden zeigen</translation>
         </message>
         <message>
             <source>Show the cutter</source>
@@ -443,6 +567,14 @@
             <translation>Geschwindigkeit</translation>
         </message>
         <message>
+            <source>Spindle</source>
+            <translation>Spindel</translation>
+        </message>
+        <message>
+            <source>Starts in material</source>
+            <translation>Beginn im Material</translation>
+        </message>
+        <message>
             <source>Stock {0:.2f} cm³, removed {1:.2f} cm³, left {2:.2f} cm³</source>
             <translation>Rohteil {0:.2f} cm³, abgetragen {1:.2f} cm³, übrig {2:.2f} cm³</translation>
         </message>
@@ -455,8 +587,16 @@
             <translation>Bei Befunden anhalten</translation>
         </message>
         <message>
+            <source>Stop at the first error</source>
+            <translation>Beim ersten Fehler anhalten</translation>
+        </message>
+        <message>
             <source>Stop at tool changes</source>
             <translation>Bei Werkzeugwechseln anhalten</translation>
+        </message>
+        <message>
+            <source>Stopped at the first error: the rest was not looked at</source>
+            <translation>Beim ersten Fehler angehalten: der Rest wurde nicht angesehen</translation>
         </message>
         <message>
             <source>Swarf: close the open task first
@@ -491,6 +631,10 @@
             <translation>Den Auftrag gibt es nicht mehr: sein Ergebnis kann nicht behalten werden.</translation>
         </message>
         <message>
+            <source>The job is gone: nothing can be kept in it.</source>
+            <translation>Der Job ist fort: in ihm kann nichts behalten werden.</translation>
+        </message>
+        <message>
             <source>The job is gone: select another one and start again.</source>
             <translation>Den Auftrag gibt es nicht mehr: wählen Sie einen anderen und beginnen Sie neu.</translation>
         </message>
@@ -509,6 +653,10 @@
         <message>
             <source>The job was deleted. What you see is how it was; it can still be played.</source>
             <translation>Der Auftrag wurde gelöscht. Sie sehen, wie er war; er kann noch abgespielt werden.</translation>
+        </message>
+        <message>
+            <source>The result has not been held against a model yet.</source>
+            <translation>Das Ergebnis wurde noch nicht mit einem Modell verglichen.</translation>
         </message>
         <message>
             <source>The stock as it was: nothing was cut here yet.</source>
@@ -535,8 +683,16 @@
             <translation>Zum Anfang der Operation (Strg+Links)</translation>
         </message>
         <message>
+            <source>Too much left</source>
+            <translation>Zu viel übrig</translation>
+        </message>
+        <message>
             <source>Tool</source>
             <translation>Werkzeug</translation>
+        </message>
+        <message>
+            <source>Travel</source>
+            <translation>Verfahrweg</translation>
         </message>
         <message>
             <source>Voxel size</source>
@@ -559,6 +715,10 @@
             <translation>Wo von selbst angehalten wird</translation>
         </message>
         <message>
+            <source>Within the tolerance</source>
+            <translation>In der Toleranz</translation>
+        </message>
+        <message>
             <source>Written: {0}</source>
             <translation>Geschrieben: {0}</translation>
         </message>
@@ -567,8 +727,16 @@
             <translation>max.</translation>
         </message>
         <message>
+            <source>passed</source>
+            <translation>bestanden</translation>
+        </message>
+        <message>
             <source>real time</source>
             <translation>Echtzeit</translation>
+        </message>
+        <message>
+            <source>the reason, kept in the document</source>
+            <translation>der Grund, bleibt im Dokument</translation>
         </message>
         <message>
             <source>the simulation has no job: it was deleted, or never chosen</source>

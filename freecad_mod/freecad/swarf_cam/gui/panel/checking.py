@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs the checks of the job that is watched, in a thread of their own, and shows what they find: in the list, on the
-time line, in the tab's title."""
+time line, in the tab's title, as pins, in the histogram."""
 
 import FreeCAD
 
-from ... import checks
+from ... import checks, native
+from ...app import accepted
 from ...core import findings as model
+from ...core.errors import JobError
 from ...core.transport import STOP_FINDING
 from .. import colours, settings
 from ..qt import QtCore
@@ -14,8 +16,8 @@ from ..worker import Worker
 translate = FreeCAD.Qt.translate
 
 
-# Milliseconds without another tolerance before it is checked with the new one.
-QUIET_MS = 700
+# Milliseconds without another tolerance before it is judged by the new one.
+QUIET_MS = 300
 
 # Milliseconds after opening at which checks begin at the latest.
 FIRST_MS = 5000
@@ -25,23 +27,27 @@ PINS = 8
 
 
 class Checking:
-    """One run at a time. found: the core Findings that are shown."""
+    """One run at a time. found: the core Findings that are shown. outcome: the checks.Outcome that they are of, None
+    before the first."""
 
     def __init__(self, panel):
         self._panel = panel
-        self._worker = None
+        self._worker = self.outcome = None
         self._old = []
         self.found = []
-        panel.findings.chosen.connect(self._go_to)
+        panel.findings.chosen.connect(self.go_to)
         panel.findings.run_pressed.connect(self._pressed)
-        self._later = QtCore.QTimer(panel)
-        self._later.setSingleShot(True)
-        self._later.setInterval(QUIET_MS)
-        self._later.timeout.connect(self.start)
-        self._first = QtCore.QTimer(panel)
-        self._first.setSingleShot(True)
-        self._first.setInterval(FIRST_MS)
-        self._first.timeout.connect(self.start)
+        panel.findings.accept_pressed.connect(self.accept)
+        panel.findings.refuse_pressed.connect(self.accept_no_more)
+        self._later = self._timer(QUIET_MS, self._judge)
+        self._first = self._timer(FIRST_MS, self.start)
+
+    def _timer(self, milliseconds, call):
+        timer = QtCore.QTimer(self._panel)
+        timer.setSingleShot(True)
+        timer.setInterval(milliseconds)
+        timer.timeout.connect(call)
+        return timer
 
     @property
     def running(self):
@@ -66,9 +72,9 @@ class Checking:
             self._first.stop()
             self.start()
 
-    def start_soon(self):
-        """Check again, when the last call of this was a while ago."""
-        if self.found or self.running or settings.flag("AutoCheck"):
+    def judge_soon(self):
+        """Judge by another tolerance, when the last call of this was a while ago."""
+        if self.outcome is not None or self.running:
             self._later.start()
 
     def close_job(self):
@@ -77,28 +83,42 @@ class Checking:
         self._first.stop()
         self.cancel()
         self._old += [self._worker] if self._worker is not None else []
-        self._worker, self.found = None, []
+        self._worker, self.outcome, self.found = None, None, []
         self._panel.findings.show_findings((), {}, None)
-        self._panel.view.pins = []
+        self._panel.deviation.show_outcome(None)
         self._panel.findings.show_checked("")
         self._show_title()
 
     def start(self):
         """Check, from the beginning when checks go on; returns at once."""
-        panel, session = self._panel, self._panel.session
+        session = self._panel.session
         if session is None:
             return
         self._first.stop()
+        self._later.stop()
+        tolerance, stop, clearance = settings.tolerance(), settings.flag("StopAtError"), settings.clearance()
+        self._run(translate("Swarf", "Checking ..."), lambda progress: checks.run(
+            session.job, session.voxel_mm, tolerance, progress, stop, clearance))
+
+    def _judge(self):
+        if self._panel.session is None:
+            return
+        if self.running or self.outcome is None or self.outcome.verification is None:
+            self.start()
+            return
+        outcome, tolerance = self.outcome, settings.tolerance()
+        self._run(translate("Swarf", "Judging ..."), lambda progress: checks.judge(outcome, tolerance, progress))
+
+    def _run(self, text, call):
+        panel, session = self._panel, self._panel.session
         if self._worker is not None:
             self.cancel()
             self._old.append(self._worker)
-        tolerance = settings.tolerance()
         # Qt keeps no worker alive: the closures do, until its end was told.
-        worker = Worker(lambda progress: checks.run(session.job, session.voxel_mm, tolerance, progress),
-                        lambda fraction: panel.findings.show_progress(fraction) if worker is self._worker else None,
-                        lambda found, error: self._end(worker, session, found, error))
+        worker = Worker(call, lambda done: panel.findings.show_progress(done) if worker is self._worker else None,
+                        lambda outcome, error: self._end(worker, session, outcome, error))
         self._worker = worker
-        panel.findings.show_running(translate("Swarf", "Checking ..."))
+        panel.findings.show_running(text)
         self._show_title()
         worker.start()
 
@@ -118,21 +138,73 @@ class Checking:
         else:
             self.start()
 
-    def _end(self, worker, session, found, error):
+    def _end(self, worker, session, outcome, error):
         if worker is not self._worker:
             self._old.remove(worker)
             return
         self._worker = None
-        panel = self._panel
         if error is None:
-            self._show(model.from_verdicts(found, session.listing))
-            text = translate("Swarf", "Checked") if found else translate("Swarf", "Checked: nothing was found")
-            if session.job.design is None:
-                text = translate("Swarf", "Checked, without a model to compare with")
+            self.outcome = outcome
+            self.accepted_changed()  # it may have, meanwhile
+            text = self._summary(session)
         else:
-            text = translate("Swarf", "Cancelled.") if panel.is_cancelled(error) else str(error)
-        panel.findings.show_checked(text)
+            text = translate("Swarf", "Cancelled.") if self._panel.is_cancelled(error) else str(error)
+        self._panel.findings.show_checked(text)
         self._show_title()
+        if error is None and outcome.stopped:
+            self.go_to(next(finding for finding in self.found if finding.severity == "error"))
+
+    def _summary(self, session):
+        if self.outcome.stopped:
+            return translate("Swarf", "Stopped at the first error: the rest was not looked at")
+        if session.job.design is None:
+            return translate("Swarf", "Checked, without a model to compare with")
+        return translate("Swarf", "Checked") if self.found else translate("Swarf", "Checked: nothing was found")
+
+    # What is accepted
+
+    def accepted_changed(self):
+        """What the job's document accepts may be another: judge what was found by it."""
+        panel = self._panel
+        if self.outcome is None or panel.session is None:
+            return
+        try:
+            if panel.job is not None:
+                entries = accepted.accepted_of(panel.job)
+                self.outcome = checks.accept(self.outcome, native.to_accepted(panel.job.Label, entries))
+        except JobError as error:
+            panel.fail(error)
+        self._show(model.from_verdicts(self.outcome.verdicts, panel.session.listing))
+        panel.deviation.show_outcome(self.outcome)
+
+    def accept(self, finding, reason):
+        """Accept a finding for a reason, which is kept in the job."""
+        entry = model.acceptance(finding.verdict, reason, self._panel.session.voxel_mm)
+        self._keep(lambda entries: entries + [entry], translate("Swarf", "Accept a finding"))
+
+    def accept_no_more(self, finding):
+        """Take back whatever accepts a finding."""
+        def others(entries):
+            knows = [acceptance.knows(finding.verdict) for acceptance in native.to_accepted("", entries)]
+            return [entry for entry, known in zip(entries, knows) if not known]
+        self._keep(others, translate("Swarf", "Accept a finding no more"))
+
+    def _keep(self, change, name):
+        job = self._panel.job
+        if job is None:
+            self._panel.fail(JobError(translate("Swarf", "The job is gone: nothing can be kept in it.")))
+            return
+        job.Document.openTransaction(name)
+        try:
+            accepted.keep(job, change(accepted.accepted_of(job)))
+        except JobError as error:
+            job.Document.abortTransaction()
+            self._panel.fail(error)
+        else:
+            job.Document.commitTransaction()
+            self.accepted_changed()
+
+    # What is shown
 
     def _show(self, found):
         panel, self.found = self._panel, found
@@ -156,7 +228,7 @@ class Checking:
         worst = next((severity for severity in model.SEVERITIES if count[severity]), None)
         tabs.setTabIcon(tabs.indexOf(page), page.icon(worst))
 
-    def _go_to(self, finding):
+    def go_to(self, finding):
         """Stand where it happens and look at it."""
         panel = self._panel
         if panel.session is None:

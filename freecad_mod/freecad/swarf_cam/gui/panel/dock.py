@@ -12,6 +12,7 @@ from ..qt import QtCore, QtWidgets
 from .accuracy import Accuracy
 from .banner import Banner
 from .checking import Checking
+from .deviation import DeviationPage
 from .files import Files
 from .findings import FindingList
 from .inspector import Inspector
@@ -34,8 +35,8 @@ QUIT_SECONDS = 10.0
 # Pixels for the picture and the lists at first.
 SIZES = (900, 150)
 
-# From this width on the lists lie beside the picture, below it else; wide enough that no tab is hidden.
-WIDE, WIDE_LISTS = 1000, 460
+# The lists lie beside the picture where it still has this width, else below it; pixels, as the lists' least width.
+WIDE_PICTURE, WIDE_LISTS = 480, 460
 
 
 class LivePanel(QtWidgets.QDockWidget):
@@ -83,11 +84,13 @@ class LivePanel(QtWidgets.QDockWidget):
         self.tabs.setObjectName("SwarfTabs")
         self.tabs.setDocumentMode(True)
         self.operations, self.program = OperationList(), ProgramList()
-        self.inspector, self.findings, self.accuracy = Inspector(), FindingList(), Accuracy()
+        self.inspector, self.findings = Inspector(), FindingList()
+        self.deviation, self.accuracy = DeviationPage(self._swarf), Accuracy()
         for widget, text in ((self.operations, translate("Swarf", "Operations")),
                              (self.program, translate("Swarf", "Program")),
                              (self.inspector, translate("Swarf", "Point")),
                              (self.findings, translate("Swarf", "Findings")),
+                             (self.deviation, translate("Swarf", "Deviation")),
                              (self.accuracy, translate("Swarf", "Accuracy"))):
             self.tabs.addTab(widget, text)
         self.splitter.addWidget(self.tabs)
@@ -100,14 +103,14 @@ class LivePanel(QtWidgets.QDockWidget):
 
     def _connect(self):
         player = self.player
-        presses = {"fit": self.view.fit, "isometric": lambda: self.view.look("isometric"), "reload": self.opening.reload,
-                   "keep": self.files.keep_result, "copy": self.files.copy_picture,
+        presses = {"fit": self.view.fit, "isometric": lambda: self.view.look("isometric"),
+                   "reload": self.opening.reload, "keep": self.files.keep_result, "copy": self.files.copy_picture,
                    "save-picture": self.files.ask_picture, "save-animation": self.files.ask_animation}
         self.tools.pressed.connect(lambda name: presses[name]())
         self.tools.switched.connect(self._switch)
         self.tools.coloured.connect(self.wish)
         self.tools.toleranced.connect(self.wish)
-        self.tools.toleranced.connect(self.checking.start_soon)
+        self.tools.toleranced.connect(self.checking.judge_soon)
         self.section.changed.connect(self.wish)
         self.view.camera_changed.connect(self.wish)
         self.view.clicked.connect(self.picking.pick)
@@ -301,10 +304,11 @@ class LivePanel(QtWidgets.QDockWidget):
     def resizeEvent(self, event):
         """Lists beside the picture when there is room."""
         super().resizeEvent(event)
-        wanted = QtCore.Qt.Horizontal if self.width() >= WIDE else QtCore.Qt.Vertical
+        lists = max(WIDE_LISTS, self.tabs.tabBar().sizeHint().width() + 8)  # no tab is hidden
+        wanted = QtCore.Qt.Horizontal if self.width() >= lists + WIDE_PICTURE else QtCore.Qt.Vertical
         if self.splitter.orientation() != wanted:
             self.splitter.setOrientation(wanted)
-            self.splitter.setSizes(SIZES if wanted == QtCore.Qt.Vertical else (self.width() - WIDE_LISTS, WIDE_LISTS))
+            self.splitter.setSizes(SIZES if wanted == QtCore.Qt.Vertical else (self.width() - lists, lists))
 
     def changeEvent(self, event):
         """The theme may have changed."""

@@ -56,6 +56,7 @@ class Opening:
         watch.changed.connect(self._job_changed)
         watch.deleted.connect(self._job_deleted)
         watch.closed.connect(self._document_closed)
+        watch.accepted.connect(panel.checking.accepted_changed, QtCore.Qt.QueuedConnection)
         self._began = time.monotonic()
         try:
             box = simulation.job_box(job)

@@ -3,6 +3,7 @@
 
 import FreeCAD
 
+from ...app.accepted import ACCEPTED
 from ...app.state import signature_steps
 from ..qt import QtCore
 from ..slices import Slices
@@ -13,11 +14,13 @@ QUIET_MS = 400
 
 class JobWatch(QtCore.QObject):
     """Document observer of one job. Signals: changed (it differs from what was read, or again not), deleted, closed
-    (its document). differs: what changed told last. known: hashes of the paths that have not changed since."""
+    (its document), accepted (what it accepts may be another). differs: what changed told last. known: hashes of the
+    paths that have not changed since."""
 
     changed = QtCore.Signal(bool)
     deleted = QtCore.Signal()
     closed = QtCore.Signal()
+    accepted = QtCore.Signal()
 
     def __init__(self, job, parent=None):
         super().__init__(parent)
@@ -63,10 +66,20 @@ class JobWatch(QtCore.QObject):
         self.differs = error is not None or signature != self._signature
         self.changed.emit(self.differs)
 
-    def on_changed(self, obj):
-        """Something in some document."""
+    def on_changed(self, obj, name=None):
+        """Something in some document; name: the property."""
         if self._job is not None and obj.Document.Name == self._document_name:
+            if obj.Name == self._name and name == ACCEPTED:
+                self.accepted.emit()
+                return
             self.known.pop(obj.Name, None)
+            self._stop_comparing()
+            self._timer.start()
+
+    def on_undone(self, document):
+        """Something was undone or done again: properties that come and go so are not told as changes."""
+        if self._job is not None and document.Name == self._document_name:
+            self.accepted.emit()
             self._stop_comparing()
             self._timer.start()
 
@@ -97,14 +110,20 @@ class _Observer:
     def __init__(self, watch):
         self._watch = watch
 
-    def _call(self, function, argument):
+    def _call(self, function, *arguments):
         try:
-            function(argument)
+            function(*arguments)
         except (ReferenceError, RuntimeError, AttributeError):
             pass
 
-    def slotChangedObject(self, obj, _):
-        self._call(self._watch.on_changed, obj)
+    def slotChangedObject(self, obj, name):
+        self._call(self._watch.on_changed, obj, name)
+
+    def slotUndoDocument(self, document):
+        self._call(self._watch.on_undone, document)
+
+    def slotRedoDocument(self, document):
+        self._call(self._watch.on_undone, document)
 
     def slotDeletedObject(self, obj):
         self._call(self._watch.on_deleted, obj)
