@@ -39,6 +39,12 @@ static swarf_status place_again(void *context, size_t index)
     return work->blocks[index].changed ? swarf_contour_place(work, &work->blocks[index]) : SWARF_OK;
 }
 
+static swarf_status tile_one(void *context, size_t index)
+{
+    contour *work = context;
+    return swarf_contour_tile(work, &work->blocks[index]);
+}
+
 static swarf_status join_one(void *context, size_t index)
 {
     contour *work = context;
@@ -177,10 +183,11 @@ static swarf_status attempt(stage *s, int first, swarf_facet_pair **pairs, size_
 {
     contour *work = s->work;
     const double voxel = work->layout->voxel;
+    SWARF_TRY(swarf_parallel_for(work->block_count, tile_one, work, NULL, 0, 1));
     SWARF_TRY(swarf_parallel_for(work->block_count, join_one, work, first ? s->progress : NULL, 0.6, 0.7));
     SWARF_TRY(gather(work, &s->facets));
     swarf_facets_snap(&s->facets);
-    if (first) s->report.full_triangles = s->facets.facet_count;
+    for (size_t i = 0; first && i < work->block_count; i++) s->report.full_triangles += work->blocks[i].full_count;
     uint8_t *kept = first ? NULL : kept_vertices(work, &s->facets);
     if (!first && !kept) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     const swarf_status status =
@@ -300,7 +307,8 @@ swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options 
     contour work = {.stock = stock,
                     .layout = swarf_tree_get_layout(stock->tree),
                     .surface = options->surface,
-                    .moves = options->moves};
+                    .moves = options->moves,
+                    .error_mm = options->error_mm};
     stage s = {.work = &work, .options = options, .progress = progress};
     const swarf_status status = make(&s, out);
     if (status == SWARF_OK && report) *report = s.report;

@@ -7,9 +7,12 @@
  *   cycle: one closed polygon of crossings on the faces of a cell; each gets one vertex, so that sheets that pass
  *   through one cell stay apart.
  *
- * Every crossing becomes a quadrilateral of the vertices of the four cells round its edge. Three passes over the blocks
- * (crossings, vertices, faces), each in parallel, each block written by one thread, numbered by prefix sums: the result
- * is the same for any number of threads.
+ * Every crossing becomes a quadrilateral of the vertices of the four cells round its edge. Four passes over the blocks
+ * (crossings, vertices, tiles, faces), each in parallel, each block written by one thread, numbered by prefix sums: the
+ * result is the same for any number of threads.
+ *
+ *   tile: a cube of 2, 4 or 8 cells along an edge, of one block, in and about which the surface is one plane; its cells
+ *   share the vertex of one of them, and their quadrilaterals become triangles or nothing.
  */
 #ifndef SWARF_MESH_CONTOUR_H
 #define SWARF_MESH_CONTOUR_H
@@ -45,11 +48,13 @@ void swarf_contour_table_fill(contour_table *table);
 typedef struct contour_crossing {
     float t;
     float normal[3];
-    int32_t move;  /* that made the surface there, -1: the first shape; SWARF_BY_FIELD: known from the field alone */
+    int32_t move;  /* that made the surface there, -1: the first shape; or one of those below */
     int32_t piece; /* of the first shape or the cutter */
 } contour_crossing;
 
-enum { SWARF_BY_FIELD = -2 };
+/** Crossings known from the field alone: of a surface that lies elsewhere, or that is flat there, so that nothing else
+ *  could tell more. */
+enum { SWARF_BY_FIELD = -2, SWARF_BY_FLAT_FIELD = INT32_MIN };
 
 /** An active cell of a block. */
 typedef struct contour_cell {
@@ -69,6 +74,8 @@ typedef struct contour_block {
     uint16_t edge_rank[3][8]; /* crossings before that word */
     uint64_t cell_mask[8];
     uint16_t cell_rank[8];
+    uint64_t flat_mask[8]; /* cells with one vertex, whose crossings are all known from a flat field */
+    uint16_t inside[9][9]; /* signs of the corners of its cells, [x][y], bit z set: material */
     /* cells near facets that cut each other, each mask a part of the one before: */
     uint64_t keep_mask[8];   /* their vertices stay when others are left out */
     uint64_t calm_mask[8];   /* and are where the surface is smooth, their quadrilaterals cut into four */
@@ -77,6 +84,7 @@ typedef struct contour_block {
     int changed;             /* vertices are to be placed again */
     uint32_t vertex_count;
     uint32_t facet_count;
+    uint32_t full_count;   /* facets, had there been no tiles */
     uint32_t centre_count; /* vertices on crossings, of quadrilaterals cut into four */
     uint32_t sharp_count;  /* vertices on edges and corners of the surface */
     uint32_t exact_count;  /* vertices on the exact surface */
@@ -86,18 +94,28 @@ typedef struct contour_block {
     contour_crossing *crossings;
     contour_cell *cells;
     contour_vertex *vertices;
+    uint16_t *tile; /* vertex that stands for a vertex, or SWARF_NO_TILE; NULL: there are no tiles */
     contour_vertex *centres;
     swarf_facet *facets; /* vertex numbers of the whole mesh; centres counted from 0, marked by SWARF_CENTRE */
 } contour_block;
 
 /** Marks a vertex number as a centre's while centres have no place yet. */
 #define SWARF_CENTRE 0x80000000u
+#define SWARF_NO_TILE 0xffffu
+
+/** How far (as a part of the error asked for) vertices in and about a tile lie from its plane, and from each other the
+ *  surface with tiles and without. Planes of neighbouring tiles have two rows of vertices in common for every four
+ *  along their edge, so that they part by 4 times the first per row; what bends where they meet is a chord's middle, 2
+ *  rows from there, and both surfaces have the first for themselves. */
+#define SWARF_TILE_FLAT 0.005
+#define SWARF_TILE_ERROR (10 * SWARF_TILE_FLAT)
 
 typedef struct contour {
     const swarf_stock *stock;
     const swarf_tree_layout *layout;
     const swarf_surface *surface; /* NULL: the field alone */
     size_t moves;                 /* of the surface that the stock has seen */
+    double error_mm;              /* that may be spent */
     contour_table table;
     contour_block *blocks;
     size_t block_count;
@@ -109,8 +127,14 @@ swarf_status swarf_contour_blocks(contour *work);
 /** The passes, one block each. */
 swarf_status swarf_contour_cross(contour *work, contour_block *block);
 swarf_status swarf_contour_place(contour *work, contour_block *block);
+swarf_status swarf_contour_tile(contour *work, contour_block *block);
 swarf_status swarf_contour_join(contour *work, contour_block *block);
 void swarf_contour_free(contour *work);
+
+/** A crossing on the exact surface, from what the field makes of it; `a`: the edge's voxel in mm, `outwards`: that is
+ *  material. Where there is no such surface the crossing stays as it is. */
+void swarf_contour_cross_exact(const swarf_surface_near *near, const double a[3], double voxel, int axis, int outwards,
+                               contour_crossing *crossing);
 
 /** Values of a block's voxels with their halo: index ((x + 1) * 11 + y + 1) * 11 + z + 1. */
 void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values[SWARF_HALO * SWARF_HALO * SWARF_HALO]);
@@ -137,6 +161,7 @@ typedef struct contour_polygon {
     double normal[12][3];
     int32_t move[12];
     int32_t piece[12];
+    uint8_t edge[12]; /* number of its edge in the cell */
     double corner[8]; /* the field, in voxels */
     double origin[3]; /* of the cell, in mm */
     double voxel;     /* in mm */

@@ -12,6 +12,9 @@
 /* Parts of a voxel. A crossing is searched for to a thousandth of what the mesh promises; a voxel this near to the
  * exact surface may have either sign in the field. */
 static const double crossing_tolerance = 1e-5, noise = 1e-3;
+/* Where second differences of the field (in voxels) are less than this at both ends of an edge, the surface is flat:
+ * linear crossings are right to an eighth of it, central differences to half of it (as an angle). */
+static const double flat_bend = 1e-3;
 /* An edge that meets the surface at a flatter angle than this (as a sine) is left to the bracketed search. */
 static const double least_slope = 0.1;
 
@@ -118,11 +121,22 @@ static void cross_field(const float *at, int axis, contour_crossing *out)
     out->piece = 0;
 }
 
+static int is_flat(const float *at, int axis, double voxel)
+{
+    const float *next = at + stride[axis];
+    const float most = (float)(flat_bend * voxel);
+    for (int k = 0; k < 3; k++)
+        if (!(fabsf(at[stride[k]] - 2 * at[0] + at[-stride[k]]) < most &&
+              fabsf(next[stride[k]] - 2 * next[0] + next[-stride[k]]) < most))
+            return 0;
+    return 1;
+}
+
 /* From the exact surface: Newton's steps from where the field has it, which on flat faces is at once; the bracketed
  * search where these do not end. A voxel as good as on the surface may have the other sign in the field's floats: then
  * the surface is at that voxel. Where there is no such surface the field's crossing stays. */
-static void cross_surface(const swarf_surface_near *near, const double a[3], double voxel, int axis, int outwards,
-                          contour_crossing *crossing)
+void swarf_contour_cross_exact(const swarf_surface_near *near, const double a[3], double voxel, int axis, int outwards,
+                               contour_crossing *crossing)
 {
     swarf_surface_point found;
     double t = (double)crossing->t, point[3] = {a[0], a[1], a[2]};
@@ -161,12 +175,17 @@ static swarf_status cross_edges(const contour *work, contour_block *block, const
                 const int bit = __builtin_ctzll(word), at[3] = {x, bit >> 3, bit & 7};
                 const float *value = values + ((x + 1) * SWARF_HALO + at[1] + 1) * SWARF_HALO + at[2] + 1;
                 cross_field(value, axis, next);
+                if (is_flat(value, axis, layout->voxel)) {
+                    next->t = fminf(fmaxf(next->t, (float)SWARF_CONTOUR_MARGIN), 1 - (float)SWARF_CONTOUR_MARGIN);
+                    next->move = SWARF_BY_FLAT_FIELD;
+                    continue;
+                }
                 const swarf_surface_near *surface;
                 SWARF_TRY(swarf_contour_near_get(near, at, &surface));
                 if (!surface) continue;
                 double a[3];
                 for (int k = 0; k < 3; k++) a[k] = layout->origin[k] + (block->ijk[k] + at[k]) * layout->voxel;
-                cross_surface(surface, a, layout->voxel, axis, *value < 0, next);
+                swarf_contour_cross_exact(surface, a, layout->voxel, axis, *value < 0, next);
             }
     return SWARF_OK;
 }
@@ -216,6 +235,7 @@ void swarf_contour_free(contour *work)
         free(block->crossings);
         free(block->cells);
         free(block->vertices);
+        free(block->tile);
         free(block->centres);
         free(block->facets);
     }

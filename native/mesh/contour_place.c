@@ -27,16 +27,24 @@ static int is_flipped(const contour *work, const float *values, int config, cons
     return work->table.entry[behind][0].twice_on_face == (face ^ 1);
 }
 
+/* Where an edge of a cell starts, from the cell. */
+static void edge_offset(int edge, int out[3])
+{
+    const int axis = edge / 4;
+    out[axis] = 0;
+    out[(axis + 1) % 3] = edge >> 1 & 1;
+    out[(axis + 2) % 3] = edge & 1;
+}
+
 /* Gather the crossings of one cycle. */
 static void gather(const contour *work, const contour_block *block, const int at[3], const contour_case *joined,
                    int config, int cycle, contour_polygon *out)
 {
     out->count = 0;
     for (int edge = 0; edge < 12; edge++) {
-        const int axis = edge / 4, b = (axis + 1) % 3, c = (axis + 2) % 3;
-        int offset[3] = {0, 0, 0};
-        offset[b] = edge >> 1 & 1;
-        offset[c] = edge & 1;
+        const int axis = edge / 4;
+        int offset[3];
+        edge_offset(edge, offset);
         const int low = offset[0] * 4 + offset[1] * 2 + offset[2], high = low + (4 >> axis);
         if ((config >> low & 1) == (config >> high & 1) || joined->of_edge[edge] != cycle) continue;
         int32_t voxel[3];
@@ -44,6 +52,7 @@ static void gather(const contour *work, const contour_block *block, const int at
         const contour_crossing *crossing = swarf_contour_crossing(work, voxel, axis);
         if (!crossing) continue; /* beyond the layout: the mesh will be found open */
         const int i = out->count++;
+        out->edge[i] = (uint8_t)edge;
         for (int k = 0; k < 3; k++) {
             out->point[i][k] = offset[k] + (k == axis ? crossing->t : 0);
             out->normal[i][k] = crossing->normal[k];
@@ -61,6 +70,61 @@ static void place_middle(const contour_polygon *polygon, double out[3])
     }
 }
 
+/* In voxels: planes of crossings on one flat face pass each other's crossings this close, and the exact surface the
+ * vertex; and the cosine between their normals, for 0.3 degrees. */
+static const double same_plane = 1e-3, same_plane_cosine = 0.999986;
+
+/* Where the field is flat round all crossings, their middle is on the surface, unless that is hidden from the field. */
+static int place_flat(const contour_polygon *polygon, const swarf_surface_near *near, double out[3])
+{
+    for (int i = 0; i < polygon->count; i++)
+        if (polygon->move[i] != SWARF_BY_FLAT_FIELD) return 0;
+    double middle[3];
+    place_middle(polygon, middle);
+    const double *n = polygon->normal[0];
+    for (int i = 0; i < polygon->count; i++) {
+        const double *m = polygon->normal[i];
+        double away = 0, cosine = 0;
+        for (int k = 0; k < 3; k++) {
+            away += n[k] * (polygon->point[i][k] - middle[k]);
+            cosine += n[k] * m[k];
+        }
+        if (fabs(away) > same_plane || cosine < same_plane_cosine) return 0;
+    }
+    if (near) {
+        swarf_surface_point found;
+        double world[3], cosine = 0;
+        for (int k = 0; k < 3; k++) world[k] = polygon->origin[k] + middle[k] * polygon->voxel;
+        swarf_surface_evaluate(near, world, &found);
+        for (int k = 0; k < 3; k++) cosine += n[k] * found.normal[k];
+        if (fabs(found.value) > same_plane * polygon->voxel || cosine < same_plane_cosine) return 0;
+    }
+    memcpy(out, middle, sizeof middle);
+    swarf_contour_clamp(out);
+    return 1;
+}
+
+/* Crossings of a flat field beside others: what they are on the exact surface. */
+static void make_exact(contour_polygon *polygon, const swarf_surface_near *near, int config)
+{
+    for (int i = 0; i < polygon->count; i++) {
+        if (polygon->move[i] != SWARF_BY_FLAT_FIELD) continue;
+        const int axis = polygon->edge[i] / 4;
+        int offset[3];
+        double a[3];
+        edge_offset(polygon->edge[i], offset);
+        for (int k = 0; k < 3; k++) a[k] = polygon->origin[k] + offset[k] * polygon->voxel;
+        const int outwards = config >> (offset[0] * 4 + offset[1] * 2 + offset[2]) & 1;
+        contour_crossing crossing = {.t = (float)polygon->point[i][axis], .move = SWARF_BY_FIELD};
+        swarf_contour_cross_exact(near, a, polygon->voxel, axis, outwards, &crossing);
+        polygon->move[i] = crossing.move;
+        polygon->piece[i] = crossing.piece;
+        if (crossing.move == SWARF_BY_FIELD) continue;
+        polygon->point[i][axis] = (double)crossing.t;
+        for (int k = 0; k < 3; k++) polygon->normal[i][k] = (double)crossing.normal[k];
+    }
+}
+
 /* Leave out the crossings that only the field knows. */
 static void keep_exact(contour_polygon *polygon)
 {
@@ -75,22 +139,40 @@ static void keep_exact(contour_polygon *polygon)
     polygon->count = kept;
 }
 
-/* Place the vertex of a cycle on the exact surface if that made any of its crossings, else by the field. */
-static void place_vertex(contour_block *block, const contour_polygon *polygon, const swarf_surface_near *near, int calm,
-                         int middle, double out[3])
+/* Place the vertex of a cycle on the exact surface if that made any of its crossings, else by the field. Returns
+ * whether it lies on a flat face. */
+static int place_vertex(contour_block *block, contour_polygon *polygon, const swarf_surface_near *near, int config,
+                        int calm, int middle, double out[3])
 {
+    if (middle) {
+        place_middle(polygon, out);
+        return 0;
+    }
+    if (place_flat(polygon, near, out)) {
+        block->exact_count += near != NULL;
+        return 1;
+    }
+    if (!near) {
+        if (calm)
+            place_middle(polygon, out);
+        else
+            block->sharp_count += swarf_contour_vertex(polygon, out) > 1;
+        return 0;
+    }
+    make_exact(polygon, near, config);
     contour_polygon known = *polygon;
     keep_exact(&known);
-    const int exact = near && known.count > 0;
+    const int exact = known.count > 0;
     int rank = 1;
-    if (middle || (calm && !exact))
+    if (calm && !exact)
         place_middle(polygon, out);
     else if (calm)
         swarf_contour_vertex_smooth(&known, near, out);
     else
         rank = exact ? swarf_contour_vertex_exact(&known, near, out) : swarf_contour_vertex(polygon, out);
     block->sharp_count += rank > 1;
-    block->exact_count += exact && !middle;
+    block->exact_count += exact;
+    return 0;
 }
 
 static swarf_status place_cell(contour *work, contour_block *block, const float *values, contour_near *near, int index,
@@ -114,7 +196,9 @@ static swarf_status place_cell(contour *work, contour_block *block, const float 
     for (int cycle = 0; cycle < joined->count; cycle++) {
         double inside[3] = {0.5, 0.5, 0.5};
         gather(work, block, at, joined, cell->config, cycle, &polygon);
-        if (polygon.count > 0) place_vertex(block, &polygon, surface, calm, middle, inside);
+        const int flat =
+            polygon.count > 0 && place_vertex(block, &polygon, surface, cell->config, calm, middle, inside);
+        if (flat && joined->count == 1) block->flat_mask[at[0]] |= UINT64_C(1) << (index & 63);
         for (int k = 0; k < 3; k++)
             block->vertices[*used].xyz[k] = (float)(polygon.origin[k] + inside[k] * layout->voxel);
         (*used)++;
@@ -129,19 +213,21 @@ swarf_status swarf_contour_place(contour *work, contour_block *block)
     uint32_t cell_count = 0, vertex_count = 0;
     swarf_contour_fetch(work, block->ijk, values);
     block->sharp_count = block->exact_count = 0;
-    unsigned inside[9][9]; /* signs of the rows along z */
+    memset(block->flat_mask, 0, sizeof block->flat_mask);
+    uint16_t(*inside)[9] = block->inside;
     for (int x = 0; x < 9; x++)
         for (int y = 0; y < 9; y++) {
             const float *row = values + ((x + 1) * SWARF_HALO + y + 1) * SWARF_HALO + 1;
-            inside[x][y] = 0;
-            for (int z = 0; z < 9; z++) inside[x][y] |= (unsigned)(row[z] < 0) << z;
+            unsigned signs = 0;
+            for (int z = 0; z < 9; z++) signs |= (unsigned)(row[z] < 0) << z;
+            inside[x][y] = (uint16_t)signs;
         }
     for (int x = 0; x < 8; x++) {
         uint64_t word = 0;
         block->cell_rank[x] = (uint16_t)cell_count;
         for (int y = 0; y < 8; y++) {
-            const unsigned any = inside[x][y] | inside[x][y + 1] | inside[x + 1][y] | inside[x + 1][y + 1];
-            const unsigned all = inside[x][y] & inside[x][y + 1] & inside[x + 1][y] & inside[x + 1][y + 1];
+            const unsigned a = inside[x][y], b = inside[x][y + 1], c = inside[x + 1][y], d = inside[x + 1][y + 1];
+            const unsigned any = a | b | c | d, all = a & b & c & d;
             word |= (uint64_t)((any | any >> 1) & ~(all & all >> 1) & 0xff) << (8 * y);
         }
         for (uint64_t left = word; left; left &= left - 1) {
@@ -181,7 +267,7 @@ static const double least_height = 1e-3;
 typedef struct corner {
     double at[3]; /* in voxels from the edge's voxel */
     uint32_t number;
-    int calm;
+    int calm, tiled;
 } corner;
 
 static int find_corner(const contour *work, const int32_t voxel[3], int axis, const int back[2], corner *out)
@@ -195,7 +281,9 @@ static int find_corner(const contour *work, const int32_t voxel[3], int axis, co
     const contour_cell *found =
         block->cells + block->cell_rank[x] + __builtin_popcountll(block->cell_mask[x] & ((UINT64_C(1) << bit) - 1));
     const contour_case *joined = &work->table.entry[found->config][found->flip];
-    const uint32_t local = found->first + joined->of_edge[axis * 4 + back[0] * 2 + back[1]];
+    uint32_t local = found->first + joined->of_edge[axis * 4 + back[0] * 2 + back[1]];
+    out->tiled = block->tile && block->tile[local] != SWARF_NO_TILE;
+    if (out->tiled) local = block->tile[local];
     out->number = (uint32_t)(block->vertex_first + local);
     out->calm = (int)(block->calm_mask[x] >> bit & 1);
     for (int k = 0; k < 3; k++)
@@ -236,13 +324,13 @@ static int meets_edge(const corner q[4], int first, int axis)
     return height >= 0 && height <= 1;
 }
 
-static void put_facet(swarf_facet *facet, const contour_crossing *crossing, int outwards, uint32_t a, uint32_t b,
-                      uint32_t c)
+static void put_facet(swarf_facet *facet, const contour_crossing *crossing, int outwards, float error, uint32_t a,
+                      uint32_t b, uint32_t c)
 {
     facet->v[0] = a;
     facet->v[1] = outwards ? b : c;
     facet->v[2] = outwards ? c : b;
-    facet->error_mm = 0;
+    facet->error_mm = error;
     for (int k = 0; k < 3; k++) facet->normal[k] = (int16_t)lrintf(crossing->normal[k] * 32767);
 }
 
@@ -268,13 +356,24 @@ static int choose_diagonal(const corner q[4], int axis, int outwards, const cont
     return meets[!best] ? !best : -1;
 }
 
+enum { NONE_SAME = -1, TWO_SAME = -2 };
+
+/* The corner that is the same as the next one, in a tile with it. */
+static int find_same(const corner q[4])
+{
+    int found = NONE_SAME;
+    for (int k = 0; k < 4; k++)
+        if (q[k].number == q[(k + 1) % 4].number) found = found == NONE_SAME ? k : TWO_SAME;
+    return found;
+}
+
 swarf_status swarf_contour_join(contour *work, contour_block *block)
 {
     free(block->facets);
     free(block->centres);
     block->facets = NULL;
     block->centres = NULL;
-    block->facet_count = block->centre_count = 0;
+    block->facet_count = block->full_count = block->centre_count = 0;
     if (block->crossing_count == 0) return SWARF_OK;
     swarf_facet *facets = malloc(4 * (size_t)block->crossing_count * sizeof *facets);
     contour_vertex *centres = malloc(block->crossing_count * sizeof *centres);
@@ -293,20 +392,33 @@ swarf_status swarf_contour_join(contour *work, contour_block *block)
                 int found = 0;
                 for (int k = 0; k < 4; k++) found += find_corner(work, voxel, axis, back[k], &q[k]);
                 if (found < 4) continue; /* at the border of the layout: the mesh will be found open */
-                const int d = choose_diagonal(q, axis, outwards, crossing);
+                block->full_count += 2;
+                float error = 0;
+                for (int k = 0; k < 4; k++)
+                    if (q[k].tiled) error = (float)(SWARF_TILE_ERROR * work->error_mm);
                 swarf_facet *next = facets + block->facet_count;
+                const int same = find_same(q);
+                if (same != NONE_SAME) {
+                    if (same == TWO_SAME) continue;
+                    put_facet(next, crossing, outwards, error, q[(same + 1) % 4].number, q[(same + 2) % 4].number,
+                              q[(same + 3) % 4].number);
+                    block->facet_count++;
+                    continue;
+                }
+                const int d = choose_diagonal(q, axis, outwards, crossing);
                 if (d >= 0) {
-                    put_facet(next, crossing, outwards, q[d].number, q[d + 1].number, q[d + 2].number);
-                    put_facet(next + 1, crossing, outwards, q[d].number, q[d + 2].number, q[(d + 3) % 4].number);
+                    put_facet(next, crossing, outwards, error, q[d].number, q[d + 1].number, q[d + 2].number);
+                    put_facet(next + 1, crossing, outwards, error, q[d].number, q[d + 2].number, q[(d + 3) % 4].number);
                     block->facet_count += 2;
                     continue;
                 }
+                block->full_count += 2;
                 contour_vertex *centre = &centres[block->centre_count];
                 for (int k = 0; k < 3; k++)
                     centre->xyz[k] = (float)(work->layout->origin[k] +
                                              (voxel[k] + (k == axis ? (double)crossing->t : 0)) * work->layout->voxel);
                 for (int k = 0; k < 4; k++)
-                    put_facet(next + k, crossing, outwards, q[k].number, q[(k + 1) % 4].number,
+                    put_facet(next + k, crossing, outwards, error, q[k].number, q[(k + 1) % 4].number,
                               SWARF_CENTRE | block->centre_count);
                 block->facet_count += 4;
                 block->centre_count++;

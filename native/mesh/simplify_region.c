@@ -35,8 +35,7 @@ static const double good_enough = 0.5;
  * limit; and what is good enough there, where all but the border goes in the end. */
 static const double flat_normal = 8, flat_part = 0.05, flat_enough = 0.3;
 
-/* The facets round a vertex, in coordinates from it: those are small, so that doubles lose nothing, and all lengths and
- * angles come from the products of the ring's vertices. */
+/* The facets round a vertex, in coordinates from it: those are small, so that doubles lose nothing. */
 typedef struct ring {
     int count;
     uint32_t vertex[MOST]; /* facet i: the middle, vertex i, vertex i + 1 */
@@ -48,7 +47,9 @@ typedef struct ring {
     double at[MOST][3];
     double normal[MOST][3]; /* of facet i with its old place, not unit */
     double true_normal[MOST][3];
+    /* of rings that are not flat: */
     double dots[MOST][MOST]; /* of at[i] and at[k] */
+    double side[MOST][MOST]; /* of at[i] x at[k] and the sum of the true normals: above 0 where k is to the left of i */
 } ring;
 
 static double dot(const double a[3], const double b[3])
@@ -116,13 +117,18 @@ static double shape_of(double square, double sum)
     return sum > 0 ? 12 * square / (sum * sum) : 0;
 }
 
+static double apart(const double a[3], const double b[3])
+{
+    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
 static double worst_shape(const ring *around)
 {
     double worst = 1;
     for (int i = 0; i < around->count; i++) {
-        const int after = i + 1 < around->count ? i + 1 : 0;
-        const double sum = 2 * (around->dots[i][i] + around->dots[after][after] - around->dots[i][after]);
-        worst = least_of(worst, shape_of(dot(around->normal[i], around->normal[i]), sum));
+        const double *a = around->at[i], *b = around->at[i + 1 < around->count ? i + 1 : 0];
+        worst =
+            least_of(worst, shape_of(dot(around->normal[i], around->normal[i]), dot(a, a) + dot(b, b) + apart(a, b)));
     }
     return worst;
 }
@@ -211,6 +217,28 @@ static double score_of(double shape, double error, double limit)
     return sqrt(shape) * (1 - 0.95 * error / limit);
 }
 
+/* How far the middle lies from the new facet that comes to lie over it when it is drawn onto ring vertex j; 0 when it
+ * lies over none. This alone rules out most of what is looked at on curved faces. */
+static double lift(const ring *around, int j)
+{
+    const int n = around->count;
+    const double *side = around->side[j], *u = around->at[j];
+    int i = j + 1 < n ? j + 1 : 0;
+    for (int left = n - 2; left > 0; left--) {
+        const int next = i + 1 < n ? i + 1 : 0;
+        if (side[i] >= 0 && side[next] <= 0 && around->side[i][next] >= 0) {
+            double a[3], b[3], normal[3];
+            cross(u, around->at[i], a);
+            cross(u, around->at[next], b);
+            for (int k = 0; k < 3; k++) normal[k] = around->normal[i][k] + a[k] - b[k];
+            const double square = dot(normal, normal);
+            return square > 0 ? fabs(dot(u, normal)) / sqrt(square) : 0;
+        }
+        i = next;
+    }
+    return 0;
+}
+
 /* Error and score of drawing v onto ring vertex j; 0 when the error is too much, a facet turns or becomes a needle, or
  * the score is not above `least`: the error is then a lower bound of what it takes. Where v lies over none of the new
  * facets its distance is that from the edges between them, which is not less. */
@@ -221,6 +249,10 @@ static int try_draw(ring *around, int j, double limit, double least, double *err
     const double spare = (limit - around->error) * (limit - around->error);
     double nearest = INFINITY, before[3], after[3], normal[3];
     double shape = 1;
+    if (around->slab < 0 && !around->crease[j]) {
+        *error = around->error + lift(around, j);
+        if (*error > limit) return 0;
+    }
     *error = INFINITY;
     int i = j + 1 < n ? j + 1 : 0;
     cross(u, around->at[i], before);
@@ -230,8 +262,8 @@ static int try_draw(ring *around, int j, double limit, double least, double *err
         for (int k = 0; k < 3; k++) normal[k] = around->normal[i][k] + before[k] - after[k];
         const double square = dot(normal, normal), facing = dot(normal, around->true_normal[i]);
         if (facing <= 0 || facing * facing < least_cosine * least_cosine * 32767 * 32767 * square) return 0;
-        const double *ds = around->dots[i], *dn = around->dots[next], *du = around->dots[j];
-        const double own = shape_of(square, 2 * (ds[i] + dn[next] + du[j] - ds[next] - du[i] - du[next]));
+        const double *a = around->at[i], *b = around->at[next];
+        const double own = shape_of(square, apart(a, b) + apart(a, u) + apart(b, u));
         if (own < least_shape * least_shape) {
             if (around->shape < 0) around->shape = worst_shape(around);
             if (own <= around->shape) return 0;
@@ -295,9 +327,26 @@ static void measure_round(const simplify_region *r, uint32_t v, ring *around)
             around->true_normal[i][k] = true_normal[k];
         }
     }
+    for (int i = 0; i < n; i++) cross(around->at[i], around->at[i + 1 < n ? i + 1 : 0], around->normal[i]);
+}
+
+/* The products of the ring's vertices. */
+static void measure_pairs(ring *around)
+{
+    const int n = around->count;
+    double up[3] = {0};
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < 3; k++) up[k] += around->true_normal[i][k];
     for (int i = 0; i < n; i++) {
-        cross(around->at[i], around->at[i + 1 < n ? i + 1 : 0], around->normal[i]);
-        for (int k = 0; k <= i; k++) around->dots[i][k] = around->dots[k][i] = dot(around->at[i], around->at[k]);
+        double turned[3]; /* at[k] . turned = side[i][k] */
+        cross(up, around->at[i], turned);
+        for (int k = 0; k < i; k++) {
+            around->dots[i][k] = around->dots[k][i] = dot(around->at[i], around->at[k]);
+            around->side[i][k] = dot(around->at[k], turned);
+            around->side[k][i] = -around->side[i][k];
+        }
+        around->dots[i][i] = dot(around->at[i], around->at[i]);
+        around->side[i][i] = 0;
     }
 }
 
@@ -316,7 +365,7 @@ static void look_flat(ring *around, double limit)
     if (most <= flat_part * limit) around->slab = most;
 }
 
-static int remove_vertex(simplify_region *r, uint32_t v, double limit)
+static int remove_vertex(simplify_region *r, uint32_t v, double limit, int flat_only)
 {
     ring around;
     r->need[v] = INFINITY;
@@ -328,10 +377,17 @@ static int remove_vertex(simplify_region *r, uint32_t v, double limit)
     int creases = 0;
     for (int i = 0; i < around.count; i++) creases += around.crease[i];
     if (creases != 0 && creases != 2) return 0;
-    r->stamp++;
-    for (int i = 0; i < around.count; i++) r->mark[around.vertex[i]] = r->stamp;
     measure_round(r, v, &around);
     look_flat(&around, limit);
+    if (around.slab < 0) {
+        if (flat_only) {
+            r->state[v] = SIMPLIFY_DIRTY;
+            return 0;
+        }
+        measure_pairs(&around);
+    }
+    r->stamp++;
+    for (int i = 0; i < around.count; i++) r->mark[around.vertex[i]] = r->stamp;
     int best = -1;
     double best_score = -1, best_error = 0, least_error = INFINITY;
     for (int j = 0; j < around.count; j++) {
@@ -374,7 +430,7 @@ static size_t stride_of(size_t count)
 size_t swarf_simplify_region(simplify_region *r, double limit, int first)
 {
     const size_t far_apart = stride_of(r->vertex_count);
-    static const double steps[] = {0.01, 0.05, 0.15, 0.4, 1};
+    static const double steps[] = {0.1, 0.2, 0.45, 0.7, 1}; /* the first only where it is flat */
     for (size_t step = first ? 0 : 4; step < sizeof steps / sizeof *steps; step++) {
         const double at = limit * steps[step];
         const size_t stride = step == 0 ? far_apart : 1;
@@ -384,7 +440,7 @@ size_t swarf_simplify_region(simplify_region *r, double limit, int first)
                 if (r->state[v] != SIMPLIFY_DIRTY && (r->state[v] || !((double)r->need[v] <= at))) continue;
                 if (r->head[v] == SWARF_NO_VERTEX) continue;
                 r->state[v] = 0;
-                removed |= remove_vertex(r, (uint32_t)v, at);
+                removed |= remove_vertex(r, (uint32_t)v, at, step == 0);
             }
         }
     }

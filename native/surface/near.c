@@ -3,7 +3,8 @@
  *
  * Each trace is looked at from the middle of the box; `raw` there changes no faster than a point moves, which bounds it
  * everywhere in the box. What cannot have a zero in the box, or lies behind another trace everywhere, is left out. The
- * rest is ordered by raw, so that a point stops looking as soon as nothing nearer can come. */
+ * rest is ordered by raw, so that a point stops looking as soon as nothing nearer can come; where raw is convex its
+ * tangent in the middle tells of most traces that they are not the nearest. */
 #include "surface/surface.h"
 
 #include "base/memory.h"
@@ -14,7 +15,9 @@
 #include <string.h>
 
 struct seen {
-    double raw;
+    double raw;        /* from the middle of the box */
+    double tangent[3]; /* its gradient there */
+    int convex;        /* it is nowhere below that tangent */
     swarf_trace trace;
 };
 
@@ -89,6 +92,8 @@ static swarf_status gather_level(struct gathering *g, int level, size_t first, s
         SWARF_TRY(swarf_surface_trace(surface, i, &seen->trace));
         swarf_trace_touch(&seen->trace, near->middle, &touch);
         seen->raw = touch.raw;
+        seen->convex = touch.convex;
+        memcpy(seen->tangent, touch.tangent, sizeof seen->tangent);
         if (touch.raw > 2 * g->reach || touch.raw > g->ceiling + 2 * g->reach) continue;
         if (touch.exact) g->ceiling = fmin(g->ceiling, touch.raw);
         near->count++;
@@ -181,12 +186,18 @@ void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3
 {
     swarf_surface_point found;
     first_shape(near, point, &found);
-    double square = 0, least = INFINITY;
-    for (int k = 0; k < 3; k++) square += (point[k] - near->middle[k]) * (point[k] - near->middle[k]);
+    double way[3], square = 0, least = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        way[k] = point[k] - near->middle[k];
+        square += way[k] * way[k];
+    }
     const double away = sqrt(square), first = found.value;
     for (size_t i = 0; i < near->count; i++) {
         const struct seen *seen = &near->seen[i];
-        if (seen->raw - away > fmin(least, -first)) break;
+        const double beaten = least < -first ? least : -first;
+        if (seen->raw - away > beaten) break;
+        const double *slope = seen->tangent;
+        if (seen->convex && seen->raw + slope[0] * way[0] + slope[1] * way[1] + slope[2] * way[2] > beaten) continue;
         swarf_touch touch;
         swarf_trace_touch(&seen->trace, point, &touch);
         if (touch.value >= least) continue;

@@ -26,6 +26,17 @@ static double clamp(double value, double lo, double hi)
     return value < lo ? lo : value > hi ? hi : value;
 }
 
+/* fmin() and fmax() are calls, for the sake of NaNs that cannot come here. */
+static double least_of(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double most_of(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* ---- making ------------------------------------------------------------------------------------------------------ */
 
 static double plan_radius(const swarf_path *path, const double point[3])
@@ -187,7 +198,7 @@ static double piece_value(const swarf_exact_piece *p, double rho, double height,
 /* Offer a touch; the nearest stays. */
 static void offer(swarf_touch *best, double value, double raw, const double gradient[3], double t, int32_t piece)
 {
-    best->raw = fmin(best->raw, raw);
+    best->raw = least_of(best->raw, raw);
     if (value >= best->value) return;
     best->value = value;
     memcpy(best->gradient, gradient, sizeof best->gradient);
@@ -215,9 +226,12 @@ static void touch_level(const swarf_trace *trace, double rho, double gx, double 
             piece = k;
         }
         const double gradient[3] = {nr * gx, nr * gy, nz};
+        memcpy(best->tangent, gradient, sizeof gradient);
         const double at = trace->kind == TRACE_LEVEL && trace->run == 0 && body->exact[piece].upper ? trace->t1 : t;
         offer(best, value, value, gradient, at, (int32_t)piece);
     }
+    /* a convex function of the plan distance, with which it never falls, to a segment */
+    best->convex = trace->kind == TRACE_LEVEL && body->component_count == 1;
 }
 
 static void touch_level_line(const swarf_trace *trace, const double p[3], swarf_touch *best)
@@ -252,7 +266,7 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
     const double ex = p[0] - trace->point[0], ey = p[1] - trace->point[1], z = p[2] - trace->point[2];
     const double s = ex * trace->ux + ey * trace->uy, w = ey * trace->ux - ex * trace->uy;
     const double along = clamp(s, 0, trace->run), beyond = s - along, rho = sqrt(beyond * beyond + w * w);
-    const double chord2 = fmax(0, R * R - w * w), chord = sqrt(chord2);
+    const double chord2 = most_of(0, R * R - w * w), chord = sqrt(chord2);
     const double norm = sqrt(chord2 + m * m * R * R), scale = chord / norm;
     const double low = bottom - z, high = z - (top + trace->rise);
     const double under = scale * ((s - chord) * m + bottom - z), over = scale * (z - top - (s + chord) * m);
@@ -288,10 +302,22 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
         touched = piece + 2;
     }
     const double plane_under = ((s - R) * m + bottom - z) * im, plane_over = (z - top - (s + R) * m) * im;
-    const double raw = fmax(fmax(rho - R, fmax(low, high)), fmax(plane_under, plane_over));
+    double raw = rho - R, ts = rho > 0 ? beyond / rho : 1, tw = rho > 0 ? w / rho : 0, tz = 0;
+    const double flat = most_of(low, high), plane = most_of(plane_under, plane_over);
+    if (flat > raw || plane > raw) {
+        raw = most_of(flat, plane);
+        const int up = flat >= plane ? high > low : plane_over > plane_under;
+        ts = flat >= plane ? 0 : up ? -m * im : m * im;
+        tw = 0;
+        tz = (up ? 1 : -1) * (flat >= plane ? 1 : im);
+    }
     const double gradient[3] = {gs * trace->ux - gw * trace->uy, gs * trace->uy + gw * trace->ux, gz};
     offer(best, value, raw, gradient, trace->t0 + (trace->t1 - trace->t0) * at / trace->run, touched);
     best->exact = 0;
+    best->convex = 1;
+    best->tangent[0] = ts * trace->ux - tw * trace->uy;
+    best->tangent[1] = ts * trace->uy + tw * trace->ux;
+    best->tangent[2] = tz;
 }
 
 static void touch_ball(const swarf_trace *trace, const double p[3], swarf_touch *best)
@@ -306,6 +332,7 @@ static void touch_ball(const swarf_trace *trace, const double p[3], swarf_touch 
     const double gradient[3] = {away > 0 ? e[0] / away : 0, away > 0 ? e[1] / away : 0, away > 0 ? e[2] / away : -1};
     touch_cylinder(trace, p, R, ball->centre_z, top_of(trace->body), 0, best);
     offer(best, away - R, away - R, gradient, trace->t0 + (trace->t1 - trace->t0) * q / length, 0);
+    best->convex = 0; /* the least of two convex functions */
 }
 
 /* ---- any cutter on tilted lines and curves ------------------------------------------------------------------------
@@ -384,7 +411,7 @@ static void search_convex(const struct search *search, struct moment a, struct m
     }
     double bound, t = tangents_meet(&a, &b, &bound);
     /* bisection every other step halves the bracket at least that often: 2^-40 of a move is less than settled */
-    for (int step = 0; step < 80 && fmin(a.value, b.value) - bound > settled; step++) {
+    for (int step = 0; step < 80 && least_of(a.value, b.value) - bound > settled; step++) {
         const struct moment m = at_moment(search, step & 1 ? 0.5 * (a.t + b.t) : t);
         if (m.slope < 0)
             a = m;
@@ -399,11 +426,11 @@ static void search_convex(const struct search *search, struct moment a, struct m
         square += gradient[k] * gradient[k];
     }
     /* deep inside, opposite sides of the cutter cancel: no more than tenfold */
-    const double length = fmax(sqrt(square), 0.1);
+    const double length = most_of(sqrt(square), 0.1);
     for (int k = 0; k < 3; k++) gradient[k] /= length;
     struct moment found = part < 0.5 ? a : b;
     found.value = bound;
-    offer_moment(search, &found, bound / fmin(length, 1), gradient, t);
+    offer_moment(search, &found, bound / least_of(length, 1), gradient, t);
 }
 
 /* Least value on a stretch of a curve, unless it is above what is known; the bend says by how much phi may fall short

@@ -28,9 +28,11 @@ typedef struct swarf_trace {
 typedef struct swarf_touch {
     double value, raw;
     double gradient[3]; /* of value, unit */
+    double tangent[3];  /* gradient of raw, where that is convex */
     double t;           /* of the whole move */
     int32_t piece;
-    int32_t exact; /* 1: raw is also an upper bound of the sweep's sign function */
+    int32_t exact;  /* 1: raw is also an upper bound of the sweep's sign function */
+    int32_t convex; /* 1: raw is convex, so that it is nowhere below its tangent */
 } swarf_touch;
 
 /** Parts a move is best looked at in: each turns by a right angle at most. */
