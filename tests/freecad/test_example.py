@@ -11,24 +11,29 @@ from conftest import ROOT
 from swarf_cam import reader
 
 
-@pytest.fixture(scope="module")
-def example(tmp_path_factory):
-    """Path of the example's document."""
+def make_example(script, folder, **variables):
+    """Path of the document that an example's script makes in a folder, and what it printed."""
     import shutil
 
     program = shutil.which(os.environ.get("SWARF_FREECADCMD", "freecadcmd"))
     if not program:
         pytest.skip("freecadcmd is not installed")
-    folder = tmp_path_factory.mktemp("example")
     path = folder / "job.FCStd"
     home = folder / "home"
     home.mkdir()
-    environment = dict(os.environ, SWARF_EXAMPLE_OUT=str(path), FREECAD_USER_HOME=str(home))
-    done = subprocess.run([program, os.path.join(ROOT, "examples", "make_job.py")], env=environment,
+    environment = dict(os.environ, SWARF_EXAMPLE_OUT=str(path), FREECAD_USER_HOME=str(home), **variables)
+    done = subprocess.run([program, os.path.join(ROOT, "examples", script)], env=environment,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300)
-    assert done.returncode == 0, done.stdout.decode(errors="replace")[-2000:]
+    text = done.stdout.decode(errors="replace")
+    assert done.returncode == 0, text[-2000:]
     assert path.exists()
-    return path
+    return path, text
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory):
+    """Path of the example's document."""
+    return make_example("make_job.py", tmp_path_factory.mktemp("example"))[0]
 
 
 def test_a_failing_example_says_so(freecadcmd, tmp_path):
@@ -68,3 +73,21 @@ def test_simulate(example, swarf, tmp_path):
     assert removed["Drilling"] == pytest.approx(3.14159 * 2.5 ** 2 * 15, rel=0.01)
     assert removed["PeckDrilling"] == pytest.approx(2 * removed["Drilling"], rel=0.001)
     assert result["mesh"]["closed"]
+
+
+def test_two_sides(swarf, tmp_path):
+    """Milled from above, turned over, milled from below: the part comes out as designed, in FreeCAD and from its
+    document by the command line."""
+    path, text = make_example("make_two_sided.py", tmp_path, SWARF_EXAMPLE_VOXEL="0.3")
+    assert "out of date" not in text and "0 errors" in text
+    report = tmp_path / "report.json"
+    done = subprocess.run([sys.executable, "-m", "swarf", "simulate", str(path), "--job", "Bottom", "--voxel", "0.3",
+                           "--report", str(report), "--output", str(tmp_path / "part.stl")], timeout=300)
+    assert done.returncode == 0
+    result = json.loads(report.read_text())
+    assert [entry["job"] for entry in result["set_ups_before"]] == ["Top"]
+    design = result["comparison"]["design_mm3"]
+    assert result["comparison"]["excess_mm3"] < 3e-4 * design and result["comparison"]["gouge_mm3"] < 3e-4 * design
+    mine, theirs = (swarf.Mesh.read(file) for file in (tmp_path / "part.stl", tmp_path / "result.stl"))
+    assert mine.closed and mine.volume == pytest.approx(design, rel=3e-4)
+    assert theirs.volume == pytest.approx(mine.volume, rel=1e-5)  # paths are saved with six decimals

@@ -108,6 +108,8 @@ def to_job(data):
     stock = dict(data.stock)
     if stock["kind"] == "mesh":
         stock["mesh"] = to_mesh(stock["mesh"])
+    elif stock["kind"] == "result":
+        stock["job"] = to_job(stock["job"])
     cutters = to_cutters(data.tools)
     holders, doubts = hold(cutters, data)
     return load().Job(name=data.name, program=to_program(data.moves), tools=cutters,

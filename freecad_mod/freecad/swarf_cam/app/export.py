@@ -11,7 +11,7 @@ import FreeCAD
 from ..core import exchange
 from ..core.errors import JobError
 from . import job as jobs
-from . import shapes
+from . import setups, shapes
 
 INPUT, JOB, FOLDER = "SWARF_EXPORT_INPUT", "SWARF_EXPORT_JOB", "SWARF_EXPORT_FOLDER"
 
@@ -28,7 +28,7 @@ def main():
             exchange.write_design(folder, shapes.read_design(os.environ[INPUT], float(os.environ[DEFLECTION])))
         else:
             document = FreeCAD.openDocument(os.environ[INPUT])
-            exchange.write(folder, jobs.read_job(jobs.pick_job(document, os.environ.get(JOB) or None)))
+            exchange.write(folder, setups.read_job(jobs.pick_job(document, os.environ.get(JOB) or None)))
         status = 0
     except JobError as error:
         exchange.write_error(folder, str(error))

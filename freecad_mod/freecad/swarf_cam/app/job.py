@@ -129,9 +129,10 @@ def _tools(controllers):
     return result
 
 
-def gather(job):
+def gather(job, own_stock=True):
     """Steps of a fraction of a second each, so that a GUI lives between them -> what finish() makes a JobData of. Reads
-    only; the next step must not be taken when the job is gone. JobError says what stands in the way."""
+    only; the next step must not be taken when the job is gone. own_stock: its stock is read too. JobError says what
+    stands in the way."""
     notes = []
     operations, controllers = yield from _operations(job, notes)
     if not operations:
@@ -140,7 +141,7 @@ def gather(job):
     held = {int(controller.ToolNumber): holders.holder_of(controller) for controller in controllers}
     held = {number: entry for number, entry in held.items() if entry}
     teeth = {int(controller.ToolNumber): tools.teeth(controller.Tool) for controller in controllers}
-    stock = shapes.stock_of(job)
+    stock = shapes.stock_of(job) if own_stock else None
     yield
     design = yield from shapes.design_steps(job)
     return JobData(job.Label, None, described, stock, design, notes, operations,
@@ -148,7 +149,9 @@ def gather(job):
 
 
 def finish(data):
-    """The JobData with its moves; any thread. JobError as gather()."""
+    """The JobData with its moves, and those of the set-ups before; any thread. JobError as gather()."""
+    if data.stock["kind"] == "result":
+        finish(data.stock["job"])
     data.moves = program.build(data.operations)
     if not len(data.moves):
         raise JobError("the operations of the job '%s' hold no moves: recompute it" % data.name)

@@ -17,7 +17,7 @@ from .. import native
 from ..core import steps
 from ..core.errors import JobError
 from . import job as jobs
-from .state import job_signature, signature_steps
+from . import setups
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -130,13 +130,18 @@ def attach_view(obj):
 def refresh(obj):
     """Set UpToDate by comparing the inputs with those of the results. Never raises: it runs in recomputes."""
     try:
-        current = job_signature(obj.Job, obj.VoxelSize.Value)
+        current = setups.job_signature(obj.Job, obj.VoxelSize.Value)
     except (JobError, AttributeError, RuntimeError, ValueError) as error:
         FreeCAD.Console.PrintLog("Swarf: %s: %s\n" % (obj.Label, error))
         current = None
     up_to_date = bool(current) and current == obj.Signature
     if obj.UpToDate != up_to_date:  # a property that is set is a change, even to the same value
         obj.UpToDate = up_to_date
+    for job in obj.InList:  # set-ups that cut this result
+        if setups.previous_of(job) is obj:
+            for other in job.InList:
+                if other is not obj and is_simulation(other) and other.Job is job:
+                    refresh(other)
 
 
 def make(job, voxel_mm=None):
@@ -180,9 +185,9 @@ def prepare_steps(job, voxel_mm, data=None, known=None):
     paths that are known, as state.signature_steps() takes them. JobError says what stands in the way."""
     if not voxel_mm > 0:
         raise JobError("the voxel size must be greater than 0")
-    signature = yield from signature_steps(job, voxel_mm, {} if known is None else known)
+    signature = yield from setups.signature_steps(job, voxel_mm, {} if known is None else known)
     if data is None:
-        data = yield from jobs.gather(job)
+        data = yield from setups.gather(job)
     return Prepared(data, voxel_mm, signature)
 
 
@@ -193,6 +198,34 @@ def prepare(obj):
     if not jobs.is_job(obj.Job):
         raise JobError("'%s' is not a Path/CAM job" % obj.Job.Label)
     return steps.run(prepare_steps(obj.Job, obj.VoxelSize.Value))
+
+
+def possible_previous(job):
+    """Simulations of the document whose result the job could cut without cutting its own."""
+    found = []
+    for obj in job.Document.Objects:
+        if is_simulation(obj) and obj.Job is not None and jobs.is_job(obj.Job):
+            try:
+                if job not in [obj.Job, *setups.chain_of(obj.Job)]:
+                    found.append(obj)
+            except JobError:
+                pass
+    return found
+
+
+def set_stock(job, previous, placement=None):
+    """setups.assign() in one undoable step; the marks of the job's simulations follow."""
+    document = job.Document
+    document.openTransaction("Stock")
+    try:
+        setups.assign(job, previous, placement)
+        for obj in job.InList:
+            if is_simulation(obj):
+                refresh(obj)
+    except BaseException:
+        document.abortTransaction()
+        raise
+    document.commitTransaction()
 
 
 def _give_copies_their_own_file(obj):

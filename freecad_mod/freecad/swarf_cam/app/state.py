@@ -45,9 +45,9 @@ def job_signature(job, voxel_mm):
     return steps.run(signature_steps(job, voxel_mm, {}))
 
 
-def signature_steps(job, voxel_mm, known):
+def signature_steps(job, voxel_mm, known, stock=None):
     """Steps -> job_signature(). known: hashes of the paths of objects that have not changed, by name; the others' are
-    added."""
+    added. stock: what is known of a stock that is not the job's own."""
     if job is None or not jobs.is_job(job):
         return None
     operations, bits = [], {}
@@ -69,4 +69,6 @@ def signature_steps(job, voxel_mm, known):
                     bits[controller.Name].append(held)
         operations.append(entry)
     design = [_shape(getattr(model, "Shape", None)) for model in getattr(job.Model, "Group", None) or []]
-    return signature(operations, bits, _shape(getattr(job.Stock, "Shape", None)), design, float(voxel_mm))
+    if stock is None:
+        stock = _shape(getattr(job.Stock, "Shape", None))
+    return signature(operations, bits, stock, design, float(voxel_mm))

@@ -6,6 +6,7 @@
     moves.bin     the rows of the MoveTable, little-endian doubles
     stock.points, stock.triangles, design.points, design.triangles
                   little-endian doubles (x y z) and 32-bit indices, where there is such a mesh
+    before/       such a folder of the set-up before, where the stock is what it leaves
     error.json    instead of all that, when the job cannot be read: {"error": text}
 """
 
@@ -18,7 +19,9 @@ from .errors import JobError
 from .job import JobData
 from .moves import MoveTable
 
-VERSION = 2
+VERSION = 3
+
+BEFORE = "before"
 
 
 def _write(folder, name, data):
@@ -57,6 +60,10 @@ def write(folder, job):
     stock = dict(job.stock)
     if stock["kind"] == "mesh":
         _write_mesh(folder, "stock", stock.pop("mesh"))
+    elif stock["kind"] == "result":
+        os.mkdir(os.path.join(folder, BEFORE))
+        write(os.path.join(folder, BEFORE), stock.pop("job"))
+        stock.pop("path", None)  # it is gone when FreeCAD ends
     if job.design is not None:
         _write_mesh(folder, "design", job.design)
     document = {
@@ -101,6 +108,8 @@ def read(folder):
     stock = document["stock"]
     if stock["kind"] == "mesh":
         stock["mesh"] = _read_mesh(folder, "stock")
+    elif stock["kind"] == "result":
+        stock["job"] = read(os.path.join(folder, BEFORE))
     tools = {tool["number"]: (tool["name"], [(kind, [tuple(node) for node in nodes]) for kind, nodes in tool["parts"]])
              for tool in document["tools"]}
     moves = MoveTable.from_bytes(_read(folder, "moves.bin"), document["sections"], document["operations"])

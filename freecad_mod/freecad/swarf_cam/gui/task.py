@@ -7,7 +7,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from .. import native
-from ..app import simulation
+from ..app import setups, simulation
 from ..core.errors import JobError
 from .qt import QtWidgets, flags
 from .slices import Slices
@@ -31,6 +31,60 @@ def describe_estimate(job, voxel_mm):
     return translate("Swarf", "{0:.0f} voxels along the longest edge, up to {1:.0f} MB").format(cells, needed / 1e6)
 
 
+class StockChoice:
+    """What the job cuts, its own stock or what another job leaves, and how that lies. The document learns of it when the
+    work starts."""
+
+    AS_MODEL, UNCHANGED, KEEP = "model", "unchanged", "keep"
+
+    def __init__(self, job):
+        self.job = job
+        self.source, self.lie = QtWidgets.QComboBox(), QtWidgets.QComboBox()
+        self.source.setObjectName("SwarfStockFrom")
+        self.lie.setObjectName("SwarfStockLie")
+        self._simulations = simulation.possible_previous(job)
+        self.source.addItem(translate("Swarf", "the job's own"))
+        for obj in self._simulations:
+            self.source.addItem(translate("Swarf", "what is left by '{0}'").format(obj.Label))
+        previous = setups.previous_of(job)
+        if previous in self._simulations:
+            self.source.setCurrentIndex(1 + self._simulations.index(previous))
+        self.source.currentIndexChanged.connect(self.show_lies)
+        self.show_lies()
+
+    @property
+    def chosen(self):
+        """The simulation whose result is the stock, None for the job's own stock."""
+        index = self.source.currentIndex()
+        return self._simulations[index - 1] if index > 0 else None
+
+    def show_lies(self, *_):
+        """Offer what is possible."""
+        self.lie.clear()
+        self.lie.setEnabled(self.chosen is not None)
+        if self.chosen is None:
+            return
+        if setups.previous_of(self.job) is self.chosen:
+            self.lie.addItem(translate("Swarf", "as before"), self.KEEP)
+        if setups.placement_by_models(self.chosen.Job, self.job) is not None:
+            self.lie.addItem(translate("Swarf", "as the model of the job"), self.AS_MODEL)
+        for axis in "XYZ":
+            self.lie.addItem(translate("Swarf", "turned over about {0}").format(axis), axis)
+        self.lie.addItem(translate("Swarf", "where it was"), self.UNCHANGED)
+
+    def apply(self):
+        """Into the document, in one undoable step, where it differs. JobError."""
+        kind = self.lie.currentData()
+        if self.chosen is setups.previous_of(self.job) and kind in (self.KEEP, None):
+            return
+        placement = None
+        if kind == self.AS_MODEL:
+            placement = setups.placement_by_models(self.chosen.Job, self.job)
+        elif kind in ("X", "Y", "Z"):
+            placement = setups.placement_turned(self.chosen.Job, self.job, kind)
+        simulation.set_stock(self.job, self.chosen, placement)
+
+
 class SimulationPanel:
     """Task panel for a new simulation of a job (obj None) or for an existing one."""
 
@@ -43,6 +97,9 @@ class SimulationPanel:
         self.form.setWindowTitle(translate("Swarf", "Milling simulation"))
         layout = QtWidgets.QFormLayout(self.form)
         layout.addRow(translate("Swarf", "Job"), QtWidgets.QLabel(job.Label))
+        self.stock = StockChoice(job)
+        layout.addRow(translate("Swarf", "Stock"), self.stock.source)
+        layout.addRow(translate("Swarf", "It lies"), self.stock.lie)
         self.voxel = QtWidgets.QDoubleSpinBox()
         self.voxel.setDecimals(VOXEL_DECIMALS)
         self.voxel.setRange(10.0 ** -VOXEL_DECIMALS, VOXEL_MAX_MM)
@@ -98,6 +155,11 @@ class SimulationPanel:
 
     def start(self):
         """Read the job here, between the events, then simulate in a thread."""
+        try:
+            self.stock.apply()
+        except JobError as error:
+            self.show_error(error)
+            return
         self.voxel.setEnabled(False)
         self.message.setText("")
         self.bar.setRange(0, 0)

@@ -24,6 +24,10 @@
             <translation>Wie lange die Simulation dauerte</translation>
         </message>
         <message>
+            <source>How that result lies here: from its job's coordinates to these</source>
+            <translation>Wie dieses Ergebnis hier liegt: von den Koordinaten seines Auftrags zu diesen</translation>
+        </message>
+        <message>
             <source>Material left outside the model</source>
             <translation>Material, das außerhalb des Modells stehen blieb</translation>
         </message>
@@ -42,6 +46,10 @@
         <message>
             <source>Number of moves</source>
             <translation>Anzahl der Bewegungen</translation>
+        </message>
+        <message>
+            <source>Simulation whose result is the stock; none: the job's own stock</source>
+            <translation>Simulation, deren Ergebnis das Rohteil ist; keine: das eigene Rohteil des Auftrags</translation>
         </message>
         <message>
             <source>The job that is simulated</source>
@@ -331,6 +339,10 @@
             <translation>Im Dokument: {0}</translation>
         </message>
         <message>
+            <source>It lies</source>
+            <translation>Es liegt</translation>
+        </message>
+        <message>
             <source>Job</source>
             <translation>Auftrag</translation>
         </message>
@@ -575,6 +587,10 @@
             <translation>Beginn im Material</translation>
         </message>
         <message>
+            <source>Stock</source>
+            <translation>Rohteil</translation>
+        </message>
+        <message>
             <source>Stock {0:.2f} cm³, removed {1:.2f} cm³, left {2:.2f} cm³</source>
             <translation>Rohteil {0:.2f} cm³, abgetragen {1:.2f} cm³, übrig {2:.2f} cm³</translation>
         </message>
@@ -723,6 +739,14 @@
             <translation>Geschrieben: {0}</translation>
         </message>
         <message>
+            <source>as before</source>
+            <translation>wie bisher</translation>
+        </message>
+        <message>
+            <source>as the model of the job</source>
+            <translation>wie das Modell des Auftrags</translation>
+        </message>
+        <message>
             <source>max</source>
             <translation>max.</translation>
         </message>
@@ -735,12 +759,28 @@
             <translation>Echtzeit</translation>
         </message>
         <message>
+            <source>the job's own</source>
+            <translation>das des Auftrags</translation>
+        </message>
+        <message>
             <source>the reason, kept in the document</source>
             <translation>der Grund, bleibt im Dokument</translation>
         </message>
         <message>
             <source>the simulation has no job: it was deleted, or never chosen</source>
             <translation>die Simulation hat keinen Auftrag: er wurde gelöscht oder nie gewählt</translation>
+        </message>
+        <message>
+            <source>turned over about {0}</source>
+            <translation>gewendet um {0}</translation>
+        </message>
+        <message>
+            <source>what is left by '{0}'</source>
+            <translation>was „{0}“ übrig lässt</translation>
+        </message>
+        <message>
+            <source>where it was</source>
+            <translation>wo es war</translation>
         </message>
         <message>
             <source>{0:+.3f} mm</source>

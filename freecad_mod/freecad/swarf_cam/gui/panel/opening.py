@@ -8,7 +8,7 @@ import FreeCAD
 
 from ... import session as sessions
 from ...app import job as jobs
-from ...app import simulation
+from ...app import setups, simulation
 from ...core.engine import Engine
 from ...core.errors import JobError
 from .. import settings
@@ -74,7 +74,7 @@ class Opening:
     @staticmethod
     def _read_steps(watch, job):
         yield from watch.remember_steps()
-        return (yield from jobs.gather(job))
+        return (yield from setups.gather(job))
 
     @staticmethod
     def _default_voxel(box):

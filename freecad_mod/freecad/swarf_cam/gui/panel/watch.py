@@ -4,7 +4,7 @@
 import FreeCAD
 
 from ...app.accepted import ACCEPTED
-from ...app.state import signature_steps
+from ...app.setups import signature_steps
 from ..qt import QtCore
 from ..slices import Slices
 
