@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Playing a program with an eye on it. The stock only shrinks: what a batch of moves does not touch as the stock is
  * before the batch, none of its moves touches later. So each test asks once for a whole batch, and only where it
- * answers yes the batch is halved, down to the move. Fixtures and design are stocks of their own that are never cut. */
+ * answers yes the batch is halved, down to the move; then what comes before this move is cut, and it is asked again.
+ * What is cut together is as large as that allows: small batches make walls that the next one cuts away. Fixtures and
+ * design are stocks of their own that are never cut. */
 #include "swarf/check.h"
 
 #include "base/memory.h"
@@ -44,7 +46,8 @@ struct test {
     swarf_stock *target;
     const swarf_box *reach; /* of the target */
     double depth;           /* mm from which on it counts */
-    int rapids, feeds;
+    double first;           /* mm from which on its first instant counts, once it does */
+    int feeds;              /* 0: only rapids are tested */
 };
 
 enum { MOST_TESTS = 6 + 4 * MOST_TARGETS };
@@ -70,6 +73,7 @@ struct player {
     size_t number_room;
     int32_t operation, tool; /* of the batch */
     size_t batch_first, batch_count;
+    size_t uncut;                 /* its first move that is not cut */
     double from, to;              /* its part of the progress */
     int found[SWARF_CHECK_COUNT]; /* in this operation */
     int stopped;
@@ -159,13 +163,13 @@ static swarf_status first_contact(const struct test *test, const swarf_path *pat
     const double length = swarf_path_length(path), step = length > 0 ? instant * voxel / length : 1;
     swarf_path part;
     swarf_path_part(path, 0, &part);
-    SWARF_TRY(swarf_cut_touch(test->target, test->body, &part, 1, test->depth, &depth, point));
-    if (depth > test->depth) hi = 0;
+    SWARF_TRY(swarf_cut_touch(test->target, test->body, &part, 1, test->first, &depth, point));
+    if (depth > test->first) hi = 0;
     while (hi - lo > step) {
         const double middle = 0.5 * (lo + hi);
         swarf_path_part(path, middle, &part);
-        SWARF_TRY(swarf_cut_touch(test->target, test->body, &part, 1, test->depth, &depth, point));
-        if (depth > test->depth)
+        SWARF_TRY(swarf_cut_touch(test->target, test->body, &part, 1, test->first, &depth, point));
+        if (depth > test->first)
             hi = middle;
         else
             lo = middle;
@@ -273,26 +277,29 @@ static size_t make_tests(const struct player *p, const swarf_check_tool *tool, s
 {
     const double voxel = swarf_stock_voxel(p->stock), own = stock_depth * voxel, other = solid_depth * voxel;
     size_t count = 0;
-    tests[count++] = (struct test){SWARF_CHECK_RAPID, SWARF_PART_FLUTES, tool->flutes, p->stock, &p->reach, own, 1, 0};
-    tests[count++] = (struct test){SWARF_CHECK_SHANK, SWARF_PART_SHANK, tool->shank, p->stock, &p->reach, own, 1, 1};
-    tests[count++] = (struct test){SWARF_CHECK_HOLDER, SWARF_PART_HOLDER, tool->holder, p->stock, &p->reach, own, 1, 1};
+    tests[count++] = (struct test){SWARF_CHECK_RAPID, SWARF_PART_FLUTES, tool->flutes, p->stock, &p->reach, .feeds = 0};
+    tests[count++] = (struct test){SWARF_CHECK_SHANK, SWARF_PART_SHANK, tool->shank, p->stock, &p->reach, .feeds = 1};
     tests[count++] =
-        (struct test){SWARF_CHECK_NEAR, SWARF_PART_HOLDER, tool->wide_holder, p->stock, &p->reach, own, 1, 1};
-    tests[count++] = (struct test){SWARF_CHECK_DEPTH, SWARF_PART_SHANK, tool->above, p->stock, &p->reach, own, 1, 1};
+        (struct test){SWARF_CHECK_HOLDER, SWARF_PART_HOLDER, tool->holder, p->stock, &p->reach, .feeds = 1};
+    tests[count++] =
+        (struct test){SWARF_CHECK_NEAR, SWARF_PART_HOLDER, tool->wide_holder, p->stock, &p->reach, .feeds = 1};
+    tests[count++] = (struct test){SWARF_CHECK_DEPTH, SWARF_PART_SHANK, tool->above, p->stock, &p->reach, .feeds = 1};
+    for (size_t i = 0; i < count; i++) tests[i].depth = tests[i].first = own;
     for (size_t i = 0; i < p->target_count; i++) {
         const int is_design = i >= p->options->fixture_count;
-        const swarf_check_kind kind = is_design ? SWARF_CHECK_DESIGN : SWARF_CHECK_FIXTURE;
-        tests[count++] = (struct test){kind,
-                                       SWARF_PART_FLUTES,
-                                       tool->flutes,
-                                       p->targets[i],
-                                       &p->reaches[i],
-                                       other + (is_design ? p->options->design_mm : 0),
-                                       1,
-                                       1};
-        tests[count++] = (struct test){kind, SWARF_PART_SHANK, tool->shank, p->targets[i], &p->reaches[i], other, 1, 1};
-        tests[count++] =
-            (struct test){kind, SWARF_PART_HOLDER, tool->holder, p->targets[i], &p->reaches[i], other, 1, 1};
+        const swarf_body *const bodies[3] = {tool->flutes, tool->shank, tool->holder};
+        static const swarf_part_kind parts[3] = {SWARF_PART_FLUTES, SWARF_PART_SHANK, SWARF_PART_HOLDER};
+        for (int k = 0; k < 3; k++) {
+            const double allowed = is_design && k == 0 ? p->options->design_mm : 0;
+            tests[count++] = (struct test){is_design ? SWARF_CHECK_DESIGN : SWARF_CHECK_FIXTURE,
+                                           parts[k],
+                                           bodies[k],
+                                           p->targets[i],
+                                           &p->reaches[i],
+                                           other + allowed,
+                                           own + allowed,
+                                           1};
+        }
     }
     size_t kept = 0;
     for (size_t i = 0; i < count; i++)
@@ -300,8 +307,8 @@ static size_t make_tests(const struct player *p, const swarf_check_tool *tool, s
     return kept;
 }
 
-/* Paths of the moves first .. end - 1 that move and can be simulated; of rapids, feeds or both. */
-static swarf_status take_paths(struct player *p, size_t first, size_t end, int rapids, int feeds, size_t *count)
+/* Paths of the moves first .. end - 1 that move and can be simulated; without `feeds` those of rapids. */
+static swarf_status take_paths(struct player *p, size_t first, size_t end, int feeds, size_t *count)
 {
     const swarf_move *moves = swarf_program_moves(p->program);
     double from[6], to[6];
@@ -309,7 +316,7 @@ static swarf_status take_paths(struct player *p, size_t first, size_t end, int r
     SWARF_TRY(swarf_array_reserve((void **)&p->numbers, &p->number_room, end - first, sizeof *p->numbers));
     *count = 0;
     for (size_t i = first; i < end; i++) {
-        if (!(swarf_move_get_kind(&moves[i]) == SWARF_MOVE_RAPID ? rapids : feeds)) continue;
+        if (!feeds && swarf_move_get_kind(&moves[i]) != SWARF_MOVE_RAPID) continue;
         SWARF_TRY(swarf_program_path(p->program, i, &p->paths[*count]));
         if (!p->paths[*count].has_motion || swarf_program_move_axes(p->program, i, from, to)) continue;
         p->numbers[(*count)++] = i;
@@ -355,15 +362,22 @@ static int is_clear(const struct test *test, const swarf_box *tips)
     return 0;
 }
 
-static swarf_status cut(struct player *p, const swarf_check_tool *tool, size_t first, size_t end)
+static double progress_at(const struct player *p, size_t move)
+{
+    return p->from + (p->to - p->from) * (double)(move - p->batch_first) / (double)p->batch_count;
+}
+
+/* Cut what was looked at but not cut yet, up to a move. */
+static swarf_status cut_up_to(struct player *p, const swarf_check_tool *tool, size_t end)
 {
     size_t count;
-    SWARF_TRY(take_paths(p, first, end, 1, 1, &count));
+    const size_t first = p->uncut;
+    if (p->stopped || first == end) return SWARF_OK;
+    p->uncut = end;
+    SWARF_TRY(take_paths(p, first, end, 1, &count));
     if (count == 0) return SWARF_OK;
     p->known = 1;
-    if (p->stopped) return SWARF_OK;
-    const double from = p->from + (p->to - p->from) * (double)(first - p->batch_first) / (double)p->batch_count;
-    const double to = p->from + (p->to - p->from) * (double)(end - p->batch_first) / (double)p->batch_count;
+    const double from = progress_at(p, first), to = progress_at(p, end);
     if (!p->result->loads || !tool->flutes->component_count)
         return swarf_cut_body(p->stock, tool->flutes, p->paths, count, p->progress, from, to);
     const swarf_load_batch batch = {p->program, tool->cutter, tool->flutes, tool->teeth, p->first};
@@ -382,45 +396,51 @@ static swarf_status touch_near(struct player *p, const struct test *test, size_t
     return swarf_cut_touch(test->target, test->body, p->near, used, test->depth, depth, point);
 }
 
-/* Moves first .. end - 1, of which only these tests may answer yes. */
-static swarf_status play_range(struct player *p, const swarf_check_tool *tool, size_t first, size_t end,
-                               const struct test *tests, size_t test_count)
+/* Those of the tests that moves first .. end - 1 answer with yes, on the stock as it is now. */
+static swarf_status find_open(struct player *p, size_t first, size_t end, const struct test *tests, size_t test_count,
+                              struct test *open, size_t *open_count)
 {
-    struct test *open = malloc((test_count + 1) * sizeof *open);
-    if (!open) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
-    size_t open_count = 0, count = 0;
-    swarf_status status = SWARF_OK;
+    size_t count = 0;
     swarf_box tips = paths_box(NULL, 0);
     int taken = -1; /* whether the paths are those of feeds, too */
-    for (size_t i = 0; i < test_count && status == SWARF_OK; i++) {
+    *open_count = 0;
+    for (size_t i = 0; i < test_count; i++) {
         double depth = 0, point[3];
-        status = swarf_progress_report(p->progress, p->from + (p->to - p->from) * (double)(first - p->batch_first) /
-                                                                  (double)p->batch_count);
-        if (status != SWARF_OK) break;
+        SWARF_TRY(swarf_progress_report(p->progress, progress_at(p, p->uncut)));
         if (p->found[tests[i].kind] >= MOST_FINDINGS) continue;
         if (tests[i].feeds != taken) {
-            status = take_paths(p, first, end, tests[i].rapids, tests[i].feeds, &count);
-            if (status != SWARF_OK) break;
+            SWARF_TRY(take_paths(p, first, end, tests[i].feeds, &count));
             taken = tests[i].feeds;
             tips = paths_box(p->paths, count);
         }
-        if (count && !is_clear(&tests[i], &tips)) status = touch_near(p, &tests[i], count, &depth, point);
-        if (depth > tests[i].depth) open[open_count++] = tests[i];
+        if (count && !is_clear(&tests[i], &tips)) SWARF_TRY(touch_near(p, &tests[i], count, &depth, point));
+        if (depth > tests[i].depth) open[(*open_count)++] = tests[i];
     }
+    return SWARF_OK;
+}
+
+/* Look at moves first .. end - 1, of which only these tests may answer yes. What is not cut yet is still in the way
+ * then, which makes more moves doubtful but never fewer: only for one that remains in doubt it is cut. */
+static swarf_status play_range(struct player *p, const swarf_check_tool *tool, size_t first, size_t end,
+                               const struct test *tests, size_t test_count)
+{
+    size_t open_count = 0;
+    struct test *open = malloc((test_count + 1) * sizeof *open);
+    if (!open) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
+    swarf_status status = find_open(p, first, end, tests, test_count, open, &open_count);
     if (status == SWARF_OK && open_count && end - first > 1) {
         const size_t middle = first + (end - first) / 2;
         status = play_range(p, tool, first, middle, open, open_count);
         if (status == SWARF_OK && !p->stopped) status = play_range(p, tool, middle, end, open, open_count);
-        free(open);
-        return status;
-    }
-    for (size_t i = 0; i < open_count && status == SWARF_OK; i++) {
+    } else if (status == SWARF_OK && open_count) {
         swarf_path path;
-        status = swarf_program_path(p->program, first, &path);
-        if (status == SWARF_OK) status = report_contact(p, &open[i], first, &path);
+        status = cut_up_to(p, tool, first);
+        if (status == SWARF_OK) status = swarf_program_path(p->program, first, &path);
+        for (size_t i = 0; i < open_count && status == SWARF_OK; i++)
+            status = report_contact(p, &open[i], first, &path);
     }
     free(open);
-    return status == SWARF_OK ? cut(p, tool, first, end) : status;
+    return status;
 }
 
 static swarf_status play_batch(void *context, size_t first, size_t end, double from, double to, int *stop)
@@ -433,6 +453,7 @@ static swarf_status play_batch(void *context, size_t first, size_t end, double f
     p->to = to;
     p->batch_first = first;
     p->batch_count = end - first;
+    p->uncut = first;
     if (first == p->first || section->operation != p->operation) memset(p->found, 0, sizeof p->found);
     if (section->tool != p->tool) p->known = 0;
     p->operation = section->operation;
@@ -454,6 +475,7 @@ static swarf_status play_batch(void *context, size_t first, size_t end, double f
     struct test tests[MOST_TESTS];
     swarf_status status = SWARF_OK;
     if (tool && moving && !p->stopped) status = play_range(p, tool, first, end, tests, make_tests(p, tool, tests));
+    if (tool && moving && status == SWARF_OK) status = cut_up_to(p, tool, end);
     *stop = p->stopped;
     return status;
 }
@@ -478,7 +500,7 @@ static swarf_status make_targets(struct player *p)
         SWARF_TRY(swarf_stock_create_solid(solid, &options, p->progress, 0, 0, &p->targets[i]));
         p->target_count++;
         SWARF_TRY(swarf_stock_enter_write(p->targets[i]));
-        p->reaches[i] = swarf_measure_reach(p->targets[i]);
+        SWARF_TRY(swarf_measure_reach(p->targets[i], &p->reaches[i]));
     }
     return SWARF_OK;
 }
@@ -488,7 +510,7 @@ static swarf_status run(struct player *p)
     p->prepared = calloc(p->tool_count + 1, sizeof *p->prepared);
     p->result = calloc(1, sizeof *p->result);
     if (!p->prepared || !p->result) return swarf_fail(SWARF_ERROR_MEMORY, "check: out of memory");
-    p->reach = swarf_measure_reach(p->stock);
+    SWARF_TRY(swarf_measure_reach(p->stock, &p->reach));
     SWARF_TRY(make_targets(p));
     if (p->options->loads) SWARF_TRY(swarf_loads_create(p->count, &p->result->loads));
     const swarf_watch watch = {play_batch, p};

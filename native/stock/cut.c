@@ -127,11 +127,13 @@ static swarf_status remove_cube(const struct cut_work *work, struct touch *touch
 }
 
 /* Beside edges distances run short, and the more so the farther away: voxels farther from the surface than the first
- * number tell of nothing shallower than the second (both in voxels). */
-static const float touch_near = 0.75f, touch_deep = 1.3f;
+ * number tell of nothing shallower than the second (both in voxels). Below every face there are some within one voxel.
+ */
+static const float touch_near = 1, touch_deep = 1.3f;
 
 /* What a cut of the leaf would raise its values by: where -sweep exceeds the stock the two overlap, for the distances
- * to two bodies that are apart add up to at least the gap between them. */
+ * to two bodies that are apart add up to at least the gap between them. Only voxels in the material tell: those in air
+ * may have kept their distance from a face that was cut away since. */
 static void touch_leaf(const struct cut_work *work, struct touch *touch, const float *before, const float *after,
                        const int32_t corner[3])
 {
@@ -139,7 +141,7 @@ static void touch_leaf(const struct cut_work *work, struct touch *touch, const f
         /* the kernel wrote all of it: NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign) */
         const float own = before ? before[i] : -work->layout->background, depth = after[i] - own;
         const float voxel = (float)work->layout->voxel;
-        if (fabsf(own) > touch_near * voxel && depth < touch_deep * voxel) continue;
+        if (own > 0 || (own < -touch_near * voxel && depth < touch_deep * voxel)) continue;
         see_touch(touch, depth, corner[0] + (i >> 6), corner[1] + (i >> 3 & 7), corner[2] + (i & 7));
     }
 }

@@ -130,30 +130,74 @@ swarf_status swarf_stock_box(swarf_stock *stock, swarf_box *out)
     return status;
 }
 
-swarf_box swarf_measure_reach(const swarf_stock *stock)
+/* The lowest and highest places of a leaf that are in the material along each axis; 0 where there are none. */
+static int find_extent(const float values[SWARF_LEAF_SIZE], int lo[3], int hi[3])
 {
-    const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
-    const size_t nodes = swarf_layout_nodes(layout);
-    swarf_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (size_t node = 0; node < nodes; node++) {
-        int32_t origin[3], corner[3];
-        swarf_node_corner(layout, node, origin);
-        for (unsigned word = 0; word < SWARF_NODE_WORDS; word++) {
-            uint64_t left = layout->occupied[node * SWARF_NODE_WORDS + word];
-            for (; left; left &= left - 1) {
-                swarf_leaf_corner(origin, word * 64 + (unsigned)__builtin_ctzll(left), corner);
-                for (int k = 0; k < 3; k++) {
-                    box.lo[k] = fmin(box.lo[k], corner[k] - 1);
-                    box.hi[k] = fmax(box.hi[k], corner[k] + SWARF_LEAF_DIM);
-                }
-            }
+    for (int k = 0; k < 3; k++) {
+        lo[k] = SWARF_LEAF_DIM;
+        hi[k] = -1;
+    }
+    for (int i = 0; i < SWARF_LEAF_SIZE; i++) {
+        if (!(values[i] < 0)) continue;
+        const int at[3] = {i >> 6, i >> 3 & 7, i & 7};
+        for (int k = 0; k < 3; k++) {
+            lo[k] = at[k] < lo[k] ? at[k] : lo[k];
+            hi[k] = at[k] > hi[k] ? at[k] : hi[k];
         }
     }
-    for (int k = 0; k < 3; k++) {
-        box.lo[k] = layout->origin[k] + box.lo[k] * layout->voxel;
-        box.hi[k] = layout->origin[k] + box.hi[k] * layout->voxel;
+    return hi[0] >= 0;
+}
+
+/* Material ends before the next voxel that is none. */
+static swarf_status node_reach(void *context, size_t node)
+{
+    const struct walk *walk = context;
+    const uint64_t *words = walk->layout->occupied + node * SWARF_NODE_WORDS;
+    swarf_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    int32_t origin[3], corner[3];
+    swarf_node_corner(walk->layout, node, origin);
+    for (unsigned slot = 0; slot < SWARF_NODE_SLOTS; slot++) {
+        if (!(words[slot >> 6] >> (slot & 63) & 1)) continue;
+        const float *values = swarf_tree_leaf(walk->stock->tree, node, slot);
+        int lo[3] = {0, 0, 0}, hi[3] = {SWARF_LEAF_DIM - 1, SWARF_LEAF_DIM - 1, SWARF_LEAF_DIM - 1};
+        swarf_leaf_corner(origin, slot, corner);
+        if (values && !find_extent(values, lo, hi)) continue;
+        for (int k = 0; k < 3; k++) {
+            box.lo[k] = fmin(box.lo[k], corner[k] + lo[k] - 1);
+            box.hi[k] = fmax(box.hi[k], corner[k] + hi[k] + 1);
+        }
     }
-    return box;
+    walk->boxes[node] = box;
+    return SWARF_OK;
+}
+
+swarf_status swarf_measure_reach(const swarf_stock *stock, swarf_box *out)
+{
+    struct walk walk = {.stock = stock, .layout = swarf_tree_get_layout(stock->tree)};
+    swarf_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    if (stock->untouched) { /* what was cut away is not looked for */
+        for (int k = 0; k < 3; k++) {
+            box.lo[k] = stock->box_centre[k] - stock->box_half[k];
+            box.hi[k] = stock->box_centre[k] + stock->box_half[k];
+        }
+    } else {
+        const size_t nodes = swarf_layout_nodes(walk.layout);
+        walk.boxes = malloc(nodes * sizeof *walk.boxes);
+        if (!walk.boxes) return swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
+        const swarf_status status = swarf_parallel_for(nodes, node_reach, &walk, NULL, 0, 1);
+        for (size_t node = 0; node < nodes && status == SWARF_OK; node++)
+            for (int k = 0; k < 3; k++) {
+                box.lo[k] = fmin(box.lo[k], walk.boxes[node].lo[k]);
+                box.hi[k] = fmax(box.hi[k], walk.boxes[node].hi[k]);
+            }
+        free(walk.boxes);
+        SWARF_TRY(status);
+    }
+    for (int k = 0; k < 3; k++) {
+        out->lo[k] = walk.layout->origin[k] + box.lo[k] * walk.layout->voxel;
+        out->hi[k] = walk.layout->origin[k] + box.hi[k] * walk.layout->voxel;
+    }
+    return SWARF_OK;
 }
 
 /* Multiply and fold: every bit of the input reaches every bit of the state. */

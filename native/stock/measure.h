@@ -11,8 +11,8 @@
  * overcounted by up to h^2 / 4 per mm of it, h^2 / 13 on average; concave edges are undercounted as much. */
 swarf_status swarf_measure_volume(const swarf_stock *stock, double *out);
 
-/** Box in mm of all leaves and tiles that may hold material or band: at once, up to a leaf too large; empty (lo > hi)
- *  where there are none. The stock has been entered. */
-swarf_box swarf_measure_reach(const swarf_stock *stock);
+/** Box in mm that no material is outside of: exact for a block whose faces have no leaves yet (before it was cut), else
+ *  up to a voxel too large; empty (lo > hi) where there is none. The stock has been entered. */
+swarf_status swarf_measure_reach(const swarf_stock *stock, swarf_box *out);
 
 #endif

@@ -175,6 +175,60 @@ static void check_holder(double voxel)
     end(&j);
 }
 
+/* Shank and holder run sideways against the block's face at x = 0, above where the flutes cut. */
+static void check_sideways(double voxel)
+{
+    job j = begin("flat:d=6,l=10,sd=10,sl=20", voxel);
+    line(&j, SWARF_MOVE_RAPID, -20, 30, 20, 1);
+    line(&j, SWARF_MOVE_RAPID, -20, 30, -15, 2);
+    line(&j, SWARF_MOVE_FEED, -4, 30, -15, 3);
+    run(&j);
+    expect(&j, SWARF_CHECK_SHANK, 3, -5, 30, -15);
+    CHECK(j.count && j.findings[0].part == SWARF_PART_SHANK);
+    end(&j);
+    j = begin("flat:d=6,l=10,sd=6,sl=4,hd=20,hl=30", voxel);
+    line(&j, SWARF_MOVE_RAPID, -20, 30, 20, 1);
+    line(&j, SWARF_MOVE_RAPID, -20, 30, -16, 2);
+    line(&j, SWARF_MOVE_FEED, -5, 30, -16, 3);
+    run(&j);
+    expect(&j, SWARF_CHECK_HOLDER, 3, -10, 30, -16);
+    CHECK(j.count && j.findings[0].part == SWARF_PART_HOLDER);
+    end(&j);
+}
+
+/* On an arc of radius 25 about (-20, 30) the shank meets the face x = 0 with the tip at x = -5. */
+static void check_arc(double voxel)
+{
+    job j = begin("flat:d=6,l=10,sd=10,sl=20", voxel);
+    const double to[3] = {-20, 5, -15}, centre[3] = {-20, 30, -15};
+    line(&j, SWARF_MOVE_RAPID, -20, 55, 20, 1);
+    line(&j, SWARF_MOVE_RAPID, -20, 55, -15, 2);
+    CHECK_OK(swarf_program_add_arc(j.program, to, centre, SWARF_PLANE_XY, 0, 1, 300, 3));
+    run(&j);
+    expect(&j, SWARF_CHECK_SHANK, 3, -5, 50, -15);
+    end(&j);
+}
+
+/* Straight up out of a pocket beside the block's corner, where the flutes end above the block's top: what is left of
+ * the distances from that top is no material. */
+static void check_retract(double voxel)
+{
+    job j = begin("flat:d=3,l=18,sd=3,sl=20,hd=30,hl=40", voxel);
+    line(&j, SWARF_MOVE_RAPID, 70, 50, 5, 1);
+    line(&j, SWARF_MOVE_FEED, 70, 50, -17.4, 2);
+    for (double y = 50; y < 60; y += 2) {
+        line(&j, SWARF_MOVE_FEED, 70, y, -17.4, 3);
+        line(&j, SWARF_MOVE_FEED, 80, y, -17.4, 4);
+        line(&j, SWARF_MOVE_FEED, 80, y + 2, -17.4, 5);
+        line(&j, SWARF_MOVE_FEED, 70, y + 2, -17.4, 6);
+    }
+    line(&j, SWARF_MOVE_FEED, 79.999, 59.998, -17.4, 7);
+    line(&j, SWARF_MOVE_RAPID, 79.999, 59.998, 10, 8);
+    run(&j);
+    if (!CHECK(j.count == 0)) print(&j);
+    end(&j);
+}
+
 static void check_near(double voxel)
 {
     job j = begin("flat:d=6,l=16,hd=20,hl=30", voxel);
@@ -210,33 +264,56 @@ static void check_depth(double voxel)
 
 static void check_fixtures_and_design(double voxel)
 {
-    const double lo[3] = {70, 20, 0}, hi[3] = {80, 40, 15}, design_hi[3] = {80, 60, -2};
+    const double lo[3] = {70, 20, 0}, hi[3] = {80, 40, 30}, design_hi[3] = {80, 60, -2};
     shape clamp = {0}, part = {0};
     shape_box(&clamp, lo, hi);
     shape_box(&part, block.lo, design_hi);
     const swarf_triangles triangles[2] = {shape_view(&clamp), shape_view(&part)};
     swarf_solid *solid[2] = {NULL, NULL};
     for (int i = 0; i < 2; i++) CHECK_OK(swarf_solid_create(&triangles[i], NULL, &solid[i]));
-    job j = begin("flat:d=6,l=30", voxel);
     const swarf_solid *const fixtures[1] = {solid[0]};
-    j.options.fixtures = fixtures;
-    j.options.fixture_count = 1;
-    line(&j, SWARF_MOVE_RAPID, 40, 30, 5, 1);
-    line(&j, SWARF_MOVE_RAPID, 75, 30, 5, 2); /* the side meets the clamp at x = 70 */
-    run(&j);
-    if (CHECK(j.count == 1)) {
-        CHECK(j.findings[0].kind == SWARF_CHECK_FIXTURE && j.findings[0].line == 2);
-        CHECK_NEAR(j.findings[0].tip[0], 67, 0.35 * voxel + 0.05);
+    /* the side of each part meets the clamp at x = 70, on a rapid and on a feed; what is above it has not met it before
+     */
+    static const struct {
+        const char *cutter;
+        swarf_part_kind part;
+        double radius, z;
+    } sides[3] = {{"flat:d=6,l=30", SWARF_PART_FLUTES, 3, 5},
+                  {"flat:d=6,l=10,sd=8,sl=30", SWARF_PART_SHANK, 4, 1},
+                  {"flat:d=6,l=10,sd=6,sl=4,hd=20,hl=30", SWARF_PART_HOLDER, 10, 0.5}};
+    for (int i = 0; i < 6; i++) {
+        const double radius = sides[i / 2].radius, z = sides[i / 2].z;
+        job j = begin(sides[i / 2].cutter, voxel);
+        j.options.fixtures = fixtures;
+        j.options.fixture_count = 1;
+        line(&j, SWARF_MOVE_RAPID, 40, 30, z, 1);
+        line(&j, i % 2 ? SWARF_MOVE_FEED : SWARF_MOVE_RAPID, 70.6 - radius, 30, z, 2);
+        run(&j);
+        expect(&j, SWARF_CHECK_FIXTURE, 2, 70 - radius, 30, z);
+        CHECK(j.count && j.findings[0].part == (int)sides[i / 2].part);
+        end(&j);
     }
-    end(&j);
-    j = begin("flat:d=6,l=30", voxel);
+    job j = begin("flat:d=6,l=30", voxel);
     j.options.design = solid[1];
     line(&j, SWARF_MOVE_RAPID, 40, 30, 5, 1);
     line(&j, SWARF_MOVE_FEED, 40, 30, -2, 2);
     line(&j, SWARF_MOVE_FEED, 50, 30, -2, 3);
-    line(&j, SWARF_MOVE_FEED, 60, 30, -3, 4); /* 1 mm too deep */
+    line(&j, SWARF_MOVE_FEED, 50, 30, -3, 4); /* 1 mm too deep, of which 0.05 are allowed */
     run(&j);
-    if (!CHECK(j.count == 1 && j.findings[0].kind == SWARF_CHECK_DESIGN && j.findings[0].line == 4)) print(&j);
+    expect(&j, SWARF_CHECK_DESIGN, 4, 50, 30, -2.05);
+    end(&j);
+    /* a shank wider than the flutes, in a slot that these cut beside the design: no allowance for it */
+    j = begin("flat:d=6,l=10,sd=10,sl=30", voxel);
+    j.options.design = solid[1];
+    line(&j, SWARF_MOVE_RAPID, -20, 30, 5, 1);
+    line(&j, SWARF_MOVE_RAPID, -20, 30, -15, 2);
+    line(&j, SWARF_MOVE_FEED, -4, 30, -15, 3);
+    run(&j);
+    if (CHECK(j.count == 2)) { /* the block is there as well */
+        const swarf_check_finding *f = &j.findings[j.findings[0].kind != SWARF_CHECK_DESIGN];
+        CHECK(f->kind == SWARF_CHECK_DESIGN && f->part == SWARF_PART_SHANK && f->line == 3);
+        CHECK_NEAR(f->tip[0], -5, 0.1 * voxel + 0.05);
+    }
     end(&j);
     for (int i = 0; i < 2; i++) swarf_solid_release(solid[i]);
     shape_free(&clamp);
@@ -319,11 +396,14 @@ static void check_stock(void)
 
 int main(void)
 {
-    static const double voxels[3] = {0.2, 0.37, 0.5};
-    for (int i = 0; i < 3; i++) {
+    static const double voxels[5] = {0.2, 0.37, 0.5, 0.625, 0.8};
+    for (int i = 0; i < 5; i++) {
         check_all_well(voxels[i]);
+        check_retract(voxels[i]);
         check_rapids(voxels[i]);
+        check_arc(voxels[i]);
         check_holder(voxels[i]);
+        check_sideways(voxels[i]);
         check_near(voxels[i]);
         check_depth(voxels[i]);
         check_fixtures_and_design(voxels[i]);
