@@ -22,6 +22,8 @@ OUT = os.environ["SWARF_GUI_OUT"]
 FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Units").SetInt("UserSchema", 6)
 for group in ("Path", "CAM"):
     FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/" + group).SetBool("WarningSuppressVelocity", True)
+# An error would make the report view pop up, and every widget another size.
+FreeCAD.ParamGet("User parameter:BaseApp/Preferences/OutputWindow").SetBool("checkShowReportViewOnError", False)
 
 WAIT_SECONDS = 120
 

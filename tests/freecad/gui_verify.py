@@ -120,6 +120,111 @@ class Verifying(PanelTest):
         assert not panel.checking.outcome.stopped, "nothing collides: there is nothing to stop at"
         page.stop.setChecked(False)
 
+    def fixtures(self, document, job):
+        """Chosen in the document, seen in the picture, found by the checks, kept, undone."""
+        import Part
+
+        panel, page = self.panel, self.panel.setup
+        panel.tabs.setCurrentWidget(page)
+        place = panel.session.listing.operation_begin[1] - 1.5
+        panel.player.seek(place)
+        pump(0.5)
+        bare = self.image()
+        Gui.Selection.clearSelection()
+        page.add.click()
+        assert "Select" in panel.banner.text.text(), panel.banner.text.text()
+        Gui.Selection.addSelection(job.Stock)
+        page.add.click()
+        assert "stock or model" in panel.banner.text.text(), "the stock is no fixture"
+        panel.banner.done()
+        clamp = document.addObject("Part::Feature", "Clamp")
+        clamp.Shape = Part.makeBox(24, 20, 17, FreeCAD.Vector(70, 15, -15))
+        clamp.Shape = clamp.Shape.cut(Part.makeBox(10, 20, 15, FreeCAD.Vector(70, 15, -15)))
+        document.recompute()
+        undo = document.UndoCount
+        Gui.Selection.clearSelection()
+        Gui.Selection.addSelection(clamp)
+        page.add.click()
+        self.opened()
+        assert page.fixtures.topLevelItemCount() == 1 and page.fixtures.topLevelItem(0).text(0) == "Clamp"
+        assert job.SwarfFixtures == [clamp] and document.UndoCount == undo + 1
+        self.checked()
+        self.settle(place)
+        clamped = self.image()
+        assert panel.tabs.minimumSizeHint().width() < 560, "a page makes the panel too wide"
+        assert differing(bare.scaled(clamped.size()), clamped) > 0.01, "the clamp is not seen"
+        hits = [item for item in panel.checking.found if item.kind == "fixture"]
+        assert hits and {panel.session.listing.operations[item.operation].name for item in hits} == {"Facing"}, hits
+        screenshot("panel-fixture.png")
+        panel.checking.go_to(hits[0])
+        pump(0.5)
+        self.settle(hits[0].place)
+        assert hits[0].severity == "error"
+        screenshot("panel-fixture-hit.png")
+        panel.findings.stop.setChecked(True)
+        panel.player.seek(0)
+        panel.findings.run.click()
+        self.checked()
+        assert panel.checking.outcome.stopped and len(panel.checking.found) == 1
+        assert panel.transport.wanted == panel.checking.found[0].place, "the panel stands at what stopped the checks"
+        panel.findings.stop.setChecked(False)
+        clamp.Placement.Base.z = -40  # elsewhere: the job is not what was read
+        clamp.Placement = FreeCAD.Placement(FreeCAD.Vector(0, 0, -40), FreeCAD.Rotation())
+        wait_for(lambda: panel.banner.isVisible() and "changed" in panel.banner.text.text(), "a fixture that moves")
+        panel.banner.action.click()
+        self.opened()
+        self.checked()
+        assert not [item for item in panel.checking.found if item.kind == "fixture"]
+        page.fixtures.setCurrentItem(page.fixtures.topLevelItem(0))
+        page.remove.click()
+        self.opened()
+        assert job.SwarfFixtures == [] and page.fixtures.topLevelItemCount() == 0
+        self.checked()
+
+    def holders(self, document, job):
+        """From the library, with a stickout; found by the checks; a wrong one is refused."""
+        panel, page = self.panel, self.panel.setup
+        panel.tabs.setCurrentWidget(page)
+        controller = job.Tools.Group[2]
+        box = page.tools.itemWidget(page.tools.topLevelItem(2), 1)
+        assert box.findText("SK40-ER16") > 0 and box.currentText() == ""
+        undo = document.UndoCount
+        box.setCurrentIndex(box.findText("SK40-ER16"))
+        box.activated.emit(box.currentIndex())
+        self.opened()
+        assert (controller.SwarfHolder, controller.SwarfStickout.Value) == ("SK40-ER16", 26.0), "above its flutes"
+        assert document.UndoCount == undo + 1
+        self.checked()
+        assert not [item for item in panel.checking.found if item.kind == "holder"], "26 mm reach 16 mm deep"
+        length = page.tools.itemWidget(page.tools.topLevelItem(2), 2)
+        length.setValue(12.0)
+        self.opened()
+        self.checked()
+        hits = [item for item in panel.checking.found if item.kind == "holder"]
+        assert hits and panel.session.listing.operations[hits[0].operation].name == "Holes"
+        panel.tabs.setCurrentWidget(page)
+        panel.player.seek(hits[0].place)
+        self.settle(hits[0].place)
+        screenshot("panel-holder.png")
+        box = page.tools.itemWidget(page.tools.topLevelItem(2), 1)
+        box.setEditText("ER17")
+        box.lineEdit().editingFinished.emit()
+        assert "ER17" in panel.banner.text.text() and panel.banner.isVisible()
+        assert controller.SwarfHolder == "SK40-ER16", "nothing of it is in the document"
+        panel.banner.done()
+        document.undo()
+        document.undo()
+        wait_for(lambda: panel.banner.isVisible() and "changed" in panel.banner.text.text(), "undoing is a change")
+        panel.banner.action.click()
+        self.opened()
+        assert page.tools.itemWidget(page.tools.topLevelItem(2), 1).currentText() == ""
+        self.checked()
+        page.clearance.setValue(2.0)
+        self.checked()
+        assert self.settings.clearance() == 2.0
+        page.clearance.setValue(0.0)
+        self.checked()
+
     def deviation(self):
         """Colours, legend, value under the mouse, pins, another tolerance."""
         panel, view = self.panel, self.panel.view
@@ -211,7 +316,7 @@ def check():
     test = Verifying()
     document, job = new_job("verify")
     test.run((test.open, document, job), (test.findings,), (test.accepting, document, job), (test.stopping,),
-             (test.deviation,))
+             (test.deviation,), (test.fixtures, document, job), (test.holders, document, job))
 
 
 start(check)

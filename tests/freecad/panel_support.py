@@ -94,7 +94,7 @@ def wheel(widget, x, y, notches):
 
 def differing(a, b):
     """Part of the pixels in which two images differ."""
-    assert (a.width(), a.height()) == (b.width(), b.height())
+    assert a.size() == b.size(), (a.size(), b.size())
     places = [(x, y) for y in range(0, a.height(), 3) for x in range(0, a.width(), 3)]
     return sum(a.pixel(x, y) != b.pixel(x, y) for x, y in places) / len(places)
 
@@ -143,6 +143,11 @@ class PanelTest:
         """The sharp picture."""
         self.settle()
         return self.panel.view.image()
+
+    def opened(self):
+        """Wait for a session other than the one that is open."""
+        old = self.panel.session
+        wait_for(lambda: self.panel.session not in (old, None), "opening again")
 
     def checked(self):
         """Wait for the end of the checks that are to come."""

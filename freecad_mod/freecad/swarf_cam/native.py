@@ -70,20 +70,34 @@ def to_cutters(tools):
     return result
 
 
+def _holders():
+    return importlib.import_module(load().__name__ + ".holders")
+
+
+def holder_names():
+    """Names of the library of holders."""
+    return _holders().names()
+
+
+def hold_one(cutter, name, stickout, what):
+    """(cutter in a holder, what is doubtful about it). JobError, which begins with `what`, for a holder that is
+    impossible or has no stickout."""
+    try:
+        return _holders().hold(cutter, name, stickout, what)
+    except ValueError as error:
+        raise JobError(str(error)) from error
+
+
 def hold(cutters, data):
     """Put the cutters of a JobData into their holders, in place -> (number -> text, notes). JobError names the tool
     whose holder is impossible or has no stickout."""
-    library = importlib.import_module(load().__name__ + ".holders")
     texts, notes = {}, []
     for number, (name, stickout) in data.holders.items():
         if number not in cutters:
             continue
-        try:
-            cutters[number], doubts = library.hold(cutters[number], name, stickout,
-                                                   "the tool '%s' (T%d)" % (data.tools[number][0], number))
-        except ValueError as error:
-            raise JobError(str(error)) from error
-        texts[number] = library.describe(name, stickout)
+        cutters[number], doubts = hold_one(cutters[number], name, stickout,
+                                           "the tool '%s' (T%d)" % (data.tools[number][0], number))
+        texts[number] = _holders().describe(name, stickout)
         notes += doubts
     return texts, notes
 
@@ -96,6 +110,18 @@ def to_accepted(name, entries):
                 for number, entry in enumerate(entries, 1)]
     except ValueError as error:
         raise JobError(str(error)) from error
+
+
+def to_fixtures(data):
+    """swarf.Meshes of a JobData's fixtures; JobError names the one that encloses nothing."""
+    swarf, result = load(), []
+    for name, mesh in data.fixtures:
+        result.append(to_mesh(mesh))
+        try:
+            swarf.Solid(result[-1])
+        except (ValueError, swarf.Error) as error:
+            raise JobError("the fixture '%s': %s" % (name, error)) from error
+    return result
 
 
 def to_program(table):
@@ -115,7 +141,8 @@ def to_job(data):
     return load().Job(name=data.name, program=to_program(data.moves), tools=cutters,
                       tool_names={number: name for number, (name, _) in data.tools.items()}, stock=stock,
                       design=to_mesh(data.design) if data.design else None, notes=list(data.notes) + doubts,
-                      teeth=dict(data.teeth), holders=holders, accepted=to_accepted(data.name, data.accepted))
+                      teeth=dict(data.teeth), holders=holders, accepted=to_accepted(data.name, data.accepted),
+                      fixtures=to_fixtures(data))
 
 
 @dataclass

@@ -127,6 +127,8 @@ class Session:
         self._exact = hasattr(swarf.Scene, "set_surface")  # the native module can show more than the voxels
         if self._exact:
             self._scene.set_surface(stock, self.program, self.tools)  # while it is the first one
+        if hasattr(swarf.Scene, "set_fixtures"):
+            self._scene.set_fixtures(self.job.fixtures)
         limit = int(HISTORY_SHARE * native.estimate(*self.box, voxel_mm))
         self._playback = Playback(swarf.History(stock, self.program, self.tools, memory_limit=limit))
 

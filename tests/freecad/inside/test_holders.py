@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a document keeps for verification: holders with their stickout, accepted findings; designs in CAD files."""
+"""What a document keeps for verification: holders with their stickout, fixtures, accepted findings; designs in CAD
+files."""
 
 import os
 import tempfile
 import unittest
 
 import FreeCAD
+import Mesh
 import Part
 import samples
 from freecad.swarf_cam import native
-from freecad.swarf_cam.app import accepted, holders, shapes, state
+from freecad.swarf_cam.app import accepted, fixtures, holders, shapes, state
 from freecad.swarf_cam.app import job as jobs
+from freecad.swarf_cam.core import exchange
 from freecad.swarf_cam.core.errors import JobError
 
 
@@ -124,3 +127,77 @@ class TestDesigns(unittest.TestCase):
             path = os.path.join(folder, "job.FCStd")
             document.saveAs(path)
             self.assertAlmostEqual(self.volume(shapes.read_design(path, 0.01)), 8000 - 480, delta=0.01)
+
+
+class TestFixtures(unittest.TestCase):
+    def setUp(self):
+        self.document = samples.new_document(self)
+        self.job = samples.make_job(self.document)
+        self.clamp = self.document.addObject("Part::Feature", "Clamp")
+        self.clamp.Shape = Part.makeBox(5, 5, 20, FreeCAD.Vector(40, 0, -10))
+        self.document.recompute()
+
+    def keep(self, *objects):
+        self.document.openTransaction("fixtures")
+        fixtures.keep(self.job, list(objects))
+        self.document.commitTransaction()
+
+    def test_kept_read_and_undone(self):
+        before = state.job_signature(self.job, 0.5)
+        self.assertEqual(fixtures.fixtures_of(self.job), [])
+        self.keep(self.clamp, self.clamp)
+        self.assertEqual(fixtures.fixtures_of(self.job), [self.clamp])
+        after = state.job_signature(self.job, 0.5)
+        self.assertNotEqual(after, before)
+        (name, (points, triangles)), = jobs.read_job(self.job).fixtures
+        self.assertEqual((name, len(triangles)), ("Clamp", 36))
+        self.assertEqual((min(points[0::3]), max(points[2::3])), (40.0, 10.0))
+        self.clamp.Placement.Base.x = 1.0
+        self.assertNotEqual(state.job_signature(self.job, 0.5), after)
+        self.document.undo()
+        self.document.undo()
+        self.assertEqual(fixtures.fixtures_of(self.job), [])
+
+    def test_a_mesh_in_a_part_that_is_moved(self):
+        part = self.document.addObject("App::Part", "Vice")
+        jaw = self.document.addObject("Mesh::Feature", "Jaw")
+        jaw.Mesh = Mesh.createBox(2.0, 4.0, 6.0)
+        part.addObject(jaw)
+        part.Placement.Base = FreeCAD.Vector(100, 0, 0)
+        self.document.recompute()
+        self.keep(jaw)
+        (_, (points, triangles)), = jobs.read_job(self.job).fixtures
+        self.assertEqual((min(points[0::3]), max(points[0::3]), len(triangles)), (99.0, 101.0, 36))
+
+    def test_what_cannot_be_one(self):
+        for obj, text in ((self.job.Stock, "stock or model"), (self.job.Model.Group[0], "stock or model"),
+                          (self.job, "no solid"), (self.job.Operations.Group[0], "no solid")):
+            with self.assertRaisesRegex(JobError, text):
+                fixtures.keep(self.job, [obj])
+        self.keep(self.clamp)
+        self.clamp.Shape = Part.Shape()
+        with self.assertRaisesRegex(JobError, "'Clamp' has no solid"):
+            jobs.read_job(self.job)
+        self.document.removeObject("Clamp")
+        self.assertEqual(jobs.read_job(self.job).fixtures, [])
+
+    @unittest.skipUnless(native.is_available(), "the native module is not installed")
+    def test_an_open_mesh_is_named(self):
+        sheet = self.document.addObject("Mesh::Feature", "Sheet")
+        sheet.Mesh = Mesh.Mesh([[[0, 0, 0], [9, 0, 0], [0, 9, 0]]])
+        self.keep(sheet)
+        with self.assertRaisesRegex(JobError, "the fixture 'Sheet'"):
+            native.to_job(jobs.read_job(self.job))
+
+    def test_through_the_file_and_the_exchange(self):
+        self.keep(self.clamp)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "clamped.FCStd")
+            self.document.saveAs(path)
+            FreeCAD.closeDocument(self.document.Name)
+            document = FreeCAD.openDocument(path)
+            self.addCleanup(FreeCAD.closeDocument, document.Name)
+            data = jobs.read_job(jobs.pick_job(document))
+            exchange.write(folder, data)
+            self.assertEqual(exchange.read(folder).fixtures, data.fixtures)
+            self.assertEqual([name for name, _ in data.fixtures], ["Clamp"])

@@ -5,7 +5,7 @@ from ..core import cutter, program, steps
 from ..core.errors import JobError
 from ..core.job import JobData
 from ..core.placement import Placement
-from . import accepted, holders, shapes, tools
+from . import accepted, fixtures, holders, shapes, tools
 
 # Commands that are copied in one step: some milliseconds.
 COMMANDS_PER_STEP = 5000
@@ -144,8 +144,10 @@ def gather(job, own_stock=True):
     stock = shapes.stock_of(job) if own_stock else None
     yield
     design = yield from shapes.design_steps(job)
+    clamps = yield from fixtures.mesh_steps(job)
     return JobData(job.Label, None, described, stock, design, notes, operations,
-                   {number: count for number, count in teeth.items() if count}, held, accepted.accepted_of(job))
+                   {number: count for number, count in teeth.items() if count}, held, accepted.accepted_of(job),
+                   clamps)
 
 
 def finish(data):

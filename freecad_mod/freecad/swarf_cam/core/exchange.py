@@ -2,9 +2,9 @@
 """The folder through which FreeCAD's Python hands a job to another one.
 
     job.json      version, name, operations, sections, tools, stock, notes, teeth, holders,
-                  accepted; written last
+                  accepted, fixtures (names); written last
     moves.bin     the rows of the MoveTable, little-endian doubles
-    stock.points, stock.triangles, design.points, design.triangles
+    stock.points, stock.triangles, design.points, design.triangles, fixture0.points ...
                   little-endian doubles (x y z) and 32-bit indices, where there is such a mesh
     before/       such a folder of the set-up before, where the stock is what it leaves
     error.json    instead of all that, when the job cannot be read: {"error": text}
@@ -66,11 +66,14 @@ def write(folder, job):
         stock.pop("path", None)  # it is gone when FreeCAD ends
     if job.design is not None:
         _write_mesh(folder, "design", job.design)
+    for number, (_, mesh) in enumerate(job.fixtures):
+        _write_mesh(folder, "fixture%d" % number, mesh)
     document = {
         "version": VERSION, "name": job.name, "operations": job.moves.operations, "sections": job.moves.sections,
         "tools": [{"number": number, "name": name, "parts": parts} for number, (name, parts) in job.tools.items()],
         "stock": stock, "design": job.design is not None, "notes": job.notes,
         "teeth": sorted(job.teeth.items()), "holders": sorted(job.holders.items()), "accepted": job.accepted,
+        "fixtures": [name for name, _ in job.fixtures],
     }
     _write(folder, "job.json", json.dumps(document).encode())
 
@@ -116,4 +119,6 @@ def read(folder):
     design = _read_mesh(folder, "design") if document["design"] else None
     return JobData(document["name"], moves, tools, stock, design, document["notes"], teeth=dict(document["teeth"]),
                    holders={number: tuple(entry) for number, entry in document["holders"]},
-                   accepted=document["accepted"])
+                   accepted=document["accepted"],
+                   fixtures=[(name, _read_mesh(folder, "fixture%d" % number))
+                             for number, name in enumerate(document["fixtures"])])

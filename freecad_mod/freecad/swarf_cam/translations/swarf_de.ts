@@ -76,6 +76,10 @@
             <translation>Von jeder Operation abgetragenes Volumen, mm^3</translation>
         </message>
         <message>
+            <source>What holds the stock: nothing may touch it</source>
+            <translation>Was das Rohteil hält: nichts darf es berühren</translation>
+        </message>
+        <message>
             <source>What holds the tool, e.g. SK40-ER32</source>
             <translation>Was das Werkzeug hält, z. B. SK40-ER32</translation>
         </message>
@@ -107,6 +111,10 @@
             <translation>98 % liegen in</translation>
         </message>
         <message>
+            <source>A holder of the library, or form:r/z:r/z... from its lower face up, in mm</source>
+            <translation>Ein Halter der Sammlung, oder form:r/z:r/z... von seiner Unterseite aufwärts, in mm</translation>
+        </message>
+        <message>
             <source>Accept</source>
             <translation>Annehmen</translation>
         </message>
@@ -133,6 +141,14 @@
         <message>
             <source>Accuracy</source>
             <translation>Genauigkeit</translation>
+        </message>
+        <message>
+            <source>Add fixtures</source>
+            <translation>Spannmittel hinzufügen</translation>
+        </message>
+        <message>
+            <source>Add selected</source>
+            <translation>Gewählte dazu</translation>
         </message>
         <message>
             <source>Again</source>
@@ -217,6 +233,14 @@
         <message>
             <source>Checking ...</source>
             <translation>Wird geprüft ...</translation>
+        </message>
+        <message>
+            <source>Choose a holder</source>
+            <translation>Einen Halter wählen</translation>
+        </message>
+        <message>
+            <source>Clearance of holders</source>
+            <translation>Abstand der Halter</translation>
         </message>
         <message>
             <source>Click on the stock to learn which line cut it.</source>
@@ -313,6 +337,10 @@
         <message>
             <source>Folder for the frames of the animation</source>
             <translation>Ordner für die Bilder der Animation</translation>
+        </message>
+        <message>
+            <source>From the tool's tip to the holder</source>
+            <translation>Von der Werkzeugspitze bis zum Halter</translation>
         </message>
         <message>
             <source>Gouges</source>
@@ -507,6 +535,14 @@
             <translation>'{0}' wird gelesen ...</translation>
         </message>
         <message>
+            <source>Remove</source>
+            <translation>Entfernen</translation>
+        </message>
+        <message>
+            <source>Remove a fixture</source>
+            <translation>Ein Spannmittel entfernen</translation>
+        </message>
+        <message>
             <source>Removed</source>
             <translation>Abgetragen</translation>
         </message>
@@ -525,6 +561,14 @@
         <message>
             <source>Save the picture ...</source>
             <translation>Bild speichern ...</translation>
+        </message>
+        <message>
+            <source>Select the solids or meshes that hold the stock in FreeCAD's tree or 3D view first.</source>
+            <translation>Zuerst die Körper oder Netze, die das Rohteil halten, in FreeCADs Baum oder 3D-Ansicht wählen.</translation>
+        </message>
+        <message>
+            <source>Set-up</source>
+            <translation>Aufspannung</translation>
         </message>
         <message>
             <source>Shadows when the view is at rest</source>
@@ -575,6 +619,10 @@
             <translation>Neigung</translation>
         </message>
         <message>
+            <source>Solids and meshes that are selected in FreeCAD hold the stock</source>
+            <translation>Körper und Netze, die in FreeCAD gewählt sind, halten das Rohteil</translation>
+        </message>
+        <message>
             <source>Speed</source>
             <translation>Geschwindigkeit</translation>
         </message>
@@ -585,6 +633,10 @@
         <message>
             <source>Starts in material</source>
             <translation>Beginn im Material</translation>
+        </message>
+        <message>
+            <source>Stickout</source>
+            <translation>Auskragung</translation>
         </message>
         <message>
             <source>Stock</source>
@@ -679,6 +731,10 @@
             <translation>Das Rohteil, wie es war: hier wurde noch nichts geschnitten.</translation>
         </message>
         <message>
+            <source>The tool controller is gone.</source>
+            <translation>Die Werkzeugsteuerung ist fort.</translation>
+        </message>
+        <message>
             <source>Time</source>
             <translation>Zeit</translation>
         </message>
@@ -719,8 +775,16 @@
             <translation>Voxel entlang der längsten Kante des Rohteils</translation>
         </message>
         <message>
+            <source>Warn where a holder comes nearer to the stock than this</source>
+            <translation>Warnen, wo ein Halter dem Rohteil näher kommt als dies</translation>
+        </message>
+        <message>
             <source>Warning</source>
             <translation>Warnung</translation>
+        </message>
+        <message>
+            <source>What holds the stock: nothing may touch it</source>
+            <translation>Was das Rohteil hält: nichts darf es berühren</translation>
         </message>
         <message>
             <source>What the colours of the stock show</source>
@@ -749,6 +813,10 @@
         <message>
             <source>max</source>
             <translation>max.</translation>
+        </message>
+        <message>
+            <source>none</source>
+            <translation>keiner</translation>
         </message>
         <message>
             <source>passed</source>

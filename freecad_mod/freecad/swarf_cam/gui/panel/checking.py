@@ -72,6 +72,12 @@ class Checking:
             self._first.stop()
             self.start()
 
+    def check_soon(self):
+        """Check again, when the last call of this was a while ago."""
+        if self.outcome is not None or self.running:
+            self.outcome = None
+            self._later.start()
+
     def judge_soon(self):
         """Judge by another tolerance, when the last call of this was a while ago."""
         if self.outcome is not None or self.running:

@@ -22,6 +22,8 @@ from .picking import Picking
 from .playing import Player
 from .program_list import ProgramList
 from .sectionrow import SectionRow
+from .settingup import SettingUp
+from .setup import SetupPage
 from .timeline import Timeline
 from .toolrow import ToolRow
 from .transport import TransportBar
@@ -40,8 +42,8 @@ WIDE_PICTURE, WIDE_LISTS = 480, 460
 
 
 class LivePanel(QtWidgets.QDockWidget):
-    """Watch one job at a time; see module. opening, player, checking, picking, files: its parts; the other names are
-    widgets."""
+    """Watch one job at a time; see module. opening, player, checking, picking, setting_up, files: its parts; the
+    other names are widgets."""
 
     def __init__(self, parent):
         super().__init__(translate("Swarf", "Milling, live"), parent)
@@ -51,6 +53,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self._build()
         self.files, self.picking = Files(self), Picking(self)
         self.opening, self.player, self.checking = Opening(self), Player(self), Checking(self)
+        self.setting_up = SettingUp(self)
         self._connect()
         QtWidgets.QApplication.instance().aboutToQuit.connect(self.shut_down)
         self.show_state()
@@ -86,11 +89,13 @@ class LivePanel(QtWidgets.QDockWidget):
         self.operations, self.program = OperationList(), ProgramList()
         self.inspector, self.findings = Inspector(), FindingList()
         self.deviation, self.accuracy = DeviationPage(self._swarf), Accuracy()
+        self.setup = SetupPage(native.holder_names())
         for widget, text in ((self.operations, translate("Swarf", "Operations")),
                              (self.program, translate("Swarf", "Program")),
                              (self.inspector, translate("Swarf", "Point")),
                              (self.findings, translate("Swarf", "Findings")),
                              (self.deviation, translate("Swarf", "Deviation")),
+                             (self.setup, translate("Swarf", "Set-up")),
                              (self.accuracy, translate("Swarf", "Accuracy"))):
             self.tabs.addTab(widget, text)
         self.splitter.addWidget(self.tabs)
@@ -111,6 +116,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.tools.coloured.connect(self.wish)
         self.tools.toleranced.connect(self.wish)
         self.tools.toleranced.connect(self.checking.judge_soon)
+        self.setup.cleared.connect(self.checking.check_soon)
         self.section.changed.connect(self.wish)
         self.view.camera_changed.connect(self.wish)
         self.view.clicked.connect(self.picking.pick)
@@ -176,6 +182,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.timeline.open(session)
         self.operations.open(session, [self._path_is_shown(index) for index in range(len(session.data.operations))])
         self.program.open(session.listing)
+        self.setting_up.show()
         self.accuracy.measured(session, seconds)
         self.tools.open(session.job.design is not None)
         self.section.open(session.box)
@@ -199,6 +206,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.timeline.open(None)
         self.operations.open(None, ())
         self.program.open(None)
+        self.setting_up.show()
         self.picking.close_job()
         self.checking.close_job()
         self.banner.done()

@@ -58,6 +58,7 @@ class Opening:
         watch.closed.connect(self._document_closed)
         watch.accepted.connect(panel.checking.accepted_changed, QtCore.Qt.QueuedConnection)
         self._began = time.monotonic()
+        panel.setting_up.show()
         try:
             box = simulation.job_box(job)
         except JobError as error:
