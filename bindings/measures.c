@@ -215,3 +215,52 @@ PyObject *mesh_contour(PyObject *self, void *Py_UNUSED(closure))
                                 PyBool_FromLong(r->budget_met)};
     return sequence_of(state_of(self)->contour, values, sizeof values / sizeof *values);
 }
+
+const char mesh_split_doc[] = "split($self, point, normal)\n--\n\n"
+                              "The closed mesh cut by the plane through ``point``: (what lies against ``normal``, what "
+                              "lies along it), two closed "
+                              "Meshes\n"
+                              "with caps, empty where there is nothing. GeometryError: the mesh is open.";
+
+PyObject *mesh_split(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"point", "normal", NULL};
+    PyObject *point_object, *normal_object;
+    double point[3], normal[3];
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO:split", names, &point_object, &normal_object)) return NULL;
+    if (buffer_point(point_object, "point", point) || buffer_point(normal_object, "normal", normal)) return NULL;
+    native_call call;
+    swarf_mesh *below = NULL, *above = NULL;
+    if (call_begin(&call, NULL)) return NULL;
+    const swarf_status status = swarf_mesh_split(handle_of(self), point, normal, &below, &above);
+    if (call_end(&call, state_of(self), status)) return NULL;
+    PyObject *first = mesh_wrap(Py_TYPE(self), below), *second = mesh_wrap(Py_TYPE(self), above);
+    PyObject *result = first && second ? PyTuple_Pack(2, first, second) : NULL;
+    Py_XDECREF(first);
+    Py_XDECREF(second);
+    return result;
+}
+
+const char mesh_thickness_doc[] =
+    "thickness($self, *, progress=None)\n--\n\n"
+    "Thickness of the wall behind each triangle, mm: a read-only float32 view, the least of four rays straight into "
+    "the\n"
+    "material, from the triangle's middle and near its corners, to where the material ends; inf where there is no end.";
+
+PyObject *mesh_thickness(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"progress", NULL};
+    PyObject *progress = NULL, *result = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|$O:thickness", names, &progress)) return NULL;
+    const size_t rows = swarf_mesh_triangles(handle_of(self)).triangle_count;
+    PyObject *values = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(rows * sizeof(float)));
+    native_call call;
+    if (values && !call_begin(&call, progress)) {
+        float *out = (float *)(void *)PyBytes_AsString(values);
+        const swarf_status status = swarf_mesh_thickness(handle_of(self), &call.progress, out);
+        if (!call_end(&call, state_of(self), status))
+            result = buffer_view(state_of(self), values, out, "f", sizeof(float), rows, 0, NULL);
+    }
+    Py_XDECREF(values);
+    return result;
+}

@@ -105,7 +105,7 @@ static int module_exec(PyObject *module)
                    add_type(module, &scene_spec, &state->scene, 0) ||
                    add_type(module, &picture_spec, &state->picture, 0) ||
                    add_type(module, &surface_spec, &state->surface, 0) ||
-                   add_sequence(module, &pick_desc, &state->pick) ||
+                   add_sequence(module, &pick_desc, &state->pick) || add_sequence(module, &lump_desc, &state->lump) ||
                    add_sequence(module, &finding_desc, &state->finding) ||
                    add_sequence(module, &comparison_desc, &state->comparison) ||
                    add_sequence(module, &cluster_desc, &state->cluster) ||
@@ -132,6 +132,7 @@ static int module_traverse(PyObject *module, visitproc visit, void *arg)
     Py_VISIT(state->surface);
     Py_VISIT(state->picture);
     Py_VISIT(state->pick);
+    Py_VISIT(state->lump);
     Py_VISIT(state->view);
     Py_VISIT(state->finding);
     Py_VISIT(state->comparison);
@@ -165,6 +166,7 @@ static int module_clear(PyObject *module)
     Py_CLEAR(state->surface);
     Py_CLEAR(state->picture);
     Py_CLEAR(state->pick);
+    Py_CLEAR(state->lump);
     Py_CLEAR(state->view);
     Py_CLEAR(state->finding);
     Py_CLEAR(state->comparison);

@@ -41,6 +41,7 @@ typedef struct module_state {
     PyTypeObject *history;
     PyTypeObject *held;
     PyTypeObject *pick;
+    PyTypeObject *lump;
     PyObject *error; /* exceptions, see error.c */
     PyObject *format_error;
     PyObject *geometry_error;
@@ -144,6 +145,12 @@ PyObject *stock_wrap(PyTypeObject *type, native_call *call, swarf_status status,
 /** ((x, y, z), (x, y, z)), or None when the box is empty. */
 PyObject *box_to_python(const swarf_box *box);
 
+/* ---- lumps.c ---- */
+
+extern PyStructSequence_Desc lump_desc;
+extern const char stock_lumps_doc[];
+PyObject *stock_lumps(PyObject *self, PyObject *args, PyObject *keywords);
+
 /* ---- simulation.c ---- */
 
 extern PyType_Spec simulation_spec;
@@ -220,11 +227,14 @@ PyObject *mesh_wrap(PyTypeObject *type, swarf_mesh *handle);
 /* ---- measures.c: methods of Mesh ---- */
 
 extern PyStructSequence_Desc shell_desc, contour_desc;
-extern const char mesh_measure_doc[], mesh_shells_doc[], mesh_keep_shells_doc[], mesh_section_doc[];
+extern const char mesh_measure_doc[], mesh_shells_doc[], mesh_keep_shells_doc[], mesh_section_doc[], mesh_split_doc[],
+    mesh_thickness_doc[];
 PyObject *mesh_measure(PyObject *self, PyObject *none);
 PyObject *mesh_shells(PyObject *self, PyObject *none);
 PyObject *mesh_keep_shells(PyObject *self, PyObject *list);
 PyObject *mesh_section(PyObject *self, PyObject *args, PyObject *keywords);
+PyObject *mesh_split(PyObject *self, PyObject *args, PyObject *keywords);
+PyObject *mesh_thickness(PyObject *self, PyObject *args, PyObject *keywords);
 PyObject *mesh_contour(PyObject *self, void *closure);
 
 /* ---- mesh.c ---- */

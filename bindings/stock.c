@@ -316,6 +316,7 @@ static PyMethodDef stock_methods[] = {
      "From the first level set of a .vdb file, with its voxel size. OSError, FormatError."},
     {"estimate", WITH_KEYWORDS(stock_estimate), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
      "estimate($type, lo, hi, voxel)\n--\n\nBytes that a stock filling this box may need while it is cut."},
+    {"lumps", WITH_KEYWORDS(stock_lumps), METH_VARARGS | METH_KEYWORDS, stock_lumps_doc},
     {"placed", WITH_KEYWORDS(stock_placed), METH_VARARGS | METH_KEYWORDS, stock_placed_doc},
     {"write", WITH_KEYWORDS(stock_write), METH_VARARGS | METH_KEYWORDS,
      "write($self, path, *, progress=None)\n--\n\n"

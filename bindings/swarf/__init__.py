@@ -31,6 +31,7 @@ from ._native import (
     GeometryError,
     Held,
     History,
+    Lump,
     Mesh,
     Pick,
     Picture,
@@ -60,7 +61,7 @@ __version__ = version()
 
 __all__ = [
     "BusyError", "Camera", "Cancelled", "Check", "CheckFinding", "Cluster", "Comparison", "Contour", "Cutter",
-    "Deviation", "Error", "Finding", "FormatError", "GeometryError", "Held", "History", "Job", "Mesh", "Pick",
+    "Deviation", "Error", "Finding", "FormatError", "GeometryError", "Held", "History", "Job", "Lump", "Mesh", "Pick",
     "Picture", "Program", "Result", "Scene", "Shell", "Simulation", "Solid", "Stock", "Surface", "Verification",
     "compare_place", "compare_volume", "deviation_colours", "isa", "measure_deviation", "memory_peak", "read_gcode",
     "set_threads", "simulate", "threads", "verify", "version",

@@ -243,6 +243,11 @@ class Stock:
     @classmethod
     def estimate(cls, lo: Point, hi: Point, voxel: float) -> int:
         """Bytes that a stock filling this box may need while it is cut."""
+    def lumps(
+        self, points: Table = (), *, progress: Progress = None
+    ) -> tuple[tuple[Lump, ...], tuple[Optional[int], ...]]:
+        """What hangs together, by voxels with a common face: Lumps, the largest first, and for each of an (n, 3) table
+        of points the place of the lump that holds it, None in the air."""
     def placed(
         self,
         placement: Table,
@@ -647,6 +652,13 @@ class Mesh:
         """Tuple of a Shell per piece that hangs together by its edges."""
     def keep_shells(self, shells: Sequence[int], /) -> Mesh:
         """A Mesh of these shells alone, by their places in shells()."""
+    def split(self, point: Point, normal: Point) -> tuple[Mesh, Mesh]:
+        """The closed mesh cut by the plane through ``point``: (what lies against ``normal``, what lies along it), two
+        closed Meshes with caps, empty where there is nothing. GeometryError: the mesh is open."""
+    def thickness(self, *, progress: Progress = None) -> memoryview:
+        """Thickness of the wall behind each triangle, mm: a read-only float32 view, the least of four rays straight into
+        the material, from the triangle's middle and near its corners, to where the material ends; inf where there is no
+        end."""
     def placed(self, placement: Table, /) -> Mesh:
         """The mesh turned and moved, as a new Mesh: ``placement`` is three rows of rotation and shift (mm)."""
     def origins(
@@ -715,6 +727,14 @@ class Shell(NamedTuple):
     moments: tuple[float, float, float]
     axes: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
     bounding_box: Optional[tuple[tuple[float, float, float], tuple[float, float, float]]]
+
+class Lump(NamedTuple):
+    """Material of a stock that hangs together."""
+
+    voxels: int
+    volume_mm3: float
+    inside: tuple[float, float, float]
+    bounding_box: tuple[tuple[float, float, float], tuple[float, float, float]]
 
 class Contour(NamedTuple):
     """What Mesh.from_stock() came to."""

@@ -100,6 +100,19 @@ def make(
         "mesh": _mesh(result.mesh),
         "findings": _findings(names, simulation),
         "notes": list(job.notes),
+        "loose_pieces": [
+            {
+                "volume_mm3": piece.lump.volume_mm3,
+                "place": list(piece.lump.inside),
+                "bounding_box": {"lo": list(piece.lump.bounding_box[0]), "hi": list(piece.lump.bounding_box[1])},
+                "move": piece.move,
+                "line": piece.line,
+                "operation": piece.operation,
+                "text": piece.text,
+            }
+            for piece in result.loose.pieces
+        ],
+        "loose_crumbs": result.loose.crumbs,
         "set_ups_before": [_set_up(before, played) for before, played in result.before],
     }
     if result.comparison is not None:

@@ -7,8 +7,10 @@ import time
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Sequence
 
+from . import colours, loose
 from ._native import Camera, Comparison, Mesh, Scene, Simulation, Stock, Surface, compare_volume
 from .job import Job
+from .parts import largest
 from .stocks import DEFAULT_RESOLUTION, make_first, make_stock, stock_box, voxel_of
 
 __all__ = [
@@ -40,6 +42,7 @@ class Result:
     seconds: dict[str, float] = field(default_factory=dict)
     before: list[tuple[Job, Simulation]] = field(default_factory=list)  #: of the set-ups before, the first one first
     surface: Optional[Surface] = None  #: exact, where a mesh was made
+    loose: loose.LoosePieces = field(default_factory=loose.LoosePieces)  #: what hangs on nothing any more
 
     @property
     def failed(self) -> bool:
@@ -61,14 +64,18 @@ def simulate(
     picture: Optional[str] = None,
     picture_size: tuple[int, int] = (1600, 1200),
     view: str = "isometric",
+    colour: Optional[str] = None,
+    drop_loose: bool = False,
     progress: Optional[Progress] = None,
 ) -> Result:
     """Cut a job's stock with its program; compare, mesh, picture and write what is asked for.
 
     Where the stock is what another job leaves, that is played first. ``voxel`` in mm, or ``resolution`` voxels along the stock's longest edge (512 unless told); ``batch`` as in
     Stock.simulate(). The stock is compared with the design when the job has one. A mesh is made when ``mesh`` is true
-    or an output needs it; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file. Seconds
-    of each stage are in the result. Raises what the stages raise; nothing is written before the cutting is done.
+    or an output needs it; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file.
+    ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by. Pieces that come loose are in
+    the result, with the moves that free them; ``drop_loose`` leaves them out of mesh and files. Seconds of each stage
+    are in the result. Raises what the stages raise; nothing is written before the cutting is done.
     """
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")
@@ -99,12 +106,23 @@ def simulate(
     result = Result(job, stock, simulation, seconds=seconds, before=first.played, surface=exact)
     if compare and job.design is not None:
         result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
+    result.loose = timed("loose", lambda report: loose.find(
+        job, stock, lambda: make_stock(job.stock, voxel=stock.voxel)))
     if exact is not None:
         result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
                                                                    progress=report))
+    if drop_loose and (result.loose.pieces or result.loose.crumbs):
+        whole = Mesh.from_stock(stock) if result.mesh is None else result.mesh
+        result.stock = stock = timed("mesh", lambda report: Stock.from_mesh(largest(whole), stock.voxel, progress=report))
+        result.mesh = None if result.mesh is None else largest(whole)
+    tints = None
+    if colour is not None and result.mesh is not None:
+        tints = timed("mesh", lambda report: colours.make(colour, result.mesh, exact, job))
     for path in outputs:
-        written = result.mesh if output_suffix(path) in MESH_SUFFIXES else stock
-        timed("write", lambda report: written.write(path, progress=report))
+        if output_suffix(path) in MESH_SUFFIXES:
+            timed("write", lambda report: result.mesh.write(path, colors=tints, progress=report))
+        else:
+            timed("write", lambda report: stock.write(path, progress=report))
     if picture is not None:
         width, height = picture_size
         camera = Camera.view(view, stock.bounding_box(), width / height)

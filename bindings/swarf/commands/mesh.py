@@ -7,10 +7,11 @@ import json
 import math
 import os
 import sys
-from typing import Any, Optional, Sequence
+from typing import Any, Optional
 
-from .. import _native
+from .. import _native, colours
 from ..console import DONE, FINDINGS, check_outputs
+from ..parts import PLANE_HELP, parse_plane, pieces, thinnest
 from ..progress import Bar
 from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES
 
@@ -32,26 +33,13 @@ def add(subparsers: Any) -> None:
                          help=f"write the mesh: {' '.join(MESH_SUFFIXES)} (repeatable)")
     command.add_argument("--split", action="store_true",
                          help="write every piece that hangs together to a file of its own: FILE-1, FILE-2 ...")
+    command.add_argument("--split-at", metavar="PLANE", type=parse_plane, action="append", default=[],
+                         help=f"cut it by a plane, each side closed by caps (repeatable); {PLANE_HELP}. Each side goes to "
+                         "a file of its own, or each piece of each side with --split")
+    command.add_argument("--thickness", action="store_true",
+                         help="colour the files by wall thickness, and tell the least with --measure")
     command.add_argument("--measure", action="store_true", help="print measures of the whole and its shells as JSON")
     command.add_argument("--threads", metavar="T", type=int, default=0, help="threads to use (default: all cores)")
-
-
-def contains(outer: Any, inner: Any) -> bool:
-    """Whether a shell's box lies in another's."""
-    (outer_lo, outer_hi), (inner_lo, inner_hi) = outer.bounding_box, inner.bounding_box
-    return all(a <= b for a, b in zip(outer_lo, inner_lo)) and all(a >= b for a, b in zip(outer_hi, inner_hi))
-
-
-def pieces(shells: Sequence[Any]) -> list[list[int]]:
-    """Places of the shells of each piece, the largest piece first; a cavity belongs to the smallest solid round it."""
-    solids = sorted((i for i, shell in enumerate(shells) if shell.volume_mm3 > 0), key=lambda i: -shells[i].volume_mm3)
-    found = {i: [i] for i in solids}
-    for i, shell in enumerate(shells):
-        if shell.volume_mm3 <= 0:
-            round_it = [s for s in solids if contains(shells[s], shell)]
-            if round_it:
-                found[round_it[-1]].append(i)
-    return [found[i] for i in solids]
 
 
 def describe(shell: Any) -> dict[str, Any]:
@@ -59,16 +47,27 @@ def describe(shell: Any) -> dict[str, Any]:
     return dict(zip(shell.__match_args__, shell))
 
 
-def measures(mesh: _native.Mesh) -> dict[str, Any]:
+def measures(mesh: _native.Mesh, thickness: bool) -> dict[str, Any]:
     """All that ``--measure`` prints."""
     shells = mesh.shells()
     made: Optional[Any] = mesh.contour
-    return {
+    found = {
         "whole": describe(mesh.measure()),
         "shells": [describe(shell) for shell in shells],
         "pieces": len(pieces(shells)),
         "contour": None if made is None else describe(made),
     }
+    return {**found, "thickness": thinnest(mesh)} if thickness else found
+
+
+def parts_of(mesh: _native.Mesh, arguments: argparse.Namespace) -> list[_native.Mesh]:
+    """What goes to files of its own."""
+    parts = [mesh]
+    for point, normal in arguments.split_at:
+        parts = [side for part in parts for side in part.split(point, normal) if side.triangle_count]
+    if arguments.split:
+        parts = [part.keep_shells(piece) for part in parts for piece in pieces(part.shells())]
+    return parts
 
 
 def read(arguments: argparse.Namespace, bar: Bar) -> _native.Mesh:
@@ -99,8 +98,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise ValueError(f"budget {arguments.budget}: not a number of triangles")
     if not (arguments.output or arguments.measure):
         raise ValueError("nothing to do: give --output FILE, --measure or both")
-    if arguments.split and not arguments.output:
-        raise ValueError("--split writes files: give --output FILE")
+    if (arguments.split or arguments.split_at) and not arguments.output:
+        raise ValueError("--split and --split-at write files: give --output FILE")
     for path in arguments.output:
         if os.path.splitext(path)[1].lower() not in MESH_SUFFIXES:
             raise ValueError(f"{path}: unknown suffix; a mesh is {', '.join(MESH_SUFFIXES)}")
@@ -108,15 +107,14 @@ def run(arguments: argparse.Namespace) -> int:
     check_outputs(arguments.output, arguments.input)
     with Bar() as bar:
         mesh = read(arguments, bar)
-        parts = [mesh]
-        if arguments.split:
-            parts = [mesh.keep_shells(piece) for piece in pieces(mesh.shells())]
-        for path in arguments.output:
-            for number, part in enumerate(parts, 1):
-                part.write(numbered(path, number) if arguments.split else path,
+        several = arguments.split or bool(arguments.split_at)
+        for number, part in enumerate(parts_of(mesh, arguments), 1):
+            tints = colours.by_thickness(part) if arguments.thickness and part.triangle_count else None
+            for path in arguments.output:
+                part.write(numbered(path, number) if several else path, colors=tints,
                            progress=lambda fraction: bar("write", fraction))
     if arguments.measure:
-        json.dump(measures(mesh), sys.stdout, indent=2, allow_nan=False)
+        json.dump(measures(mesh, arguments.thickness), sys.stdout, indent=2, allow_nan=False)
         print()
     made = mesh.contour
     if made is None:

@@ -7,7 +7,7 @@ import sys
 import time
 from typing import Any
 
-from .. import inputs, report, timing
+from .. import colours, inputs, report, timing
 from ..console import DONE, FINDINGS, check_outputs, check_suffix, one_line
 from ..progress import Bar
 from ..simulate import output_suffix, simulate
@@ -24,6 +24,9 @@ def add(subparsers: Any) -> None:
     inputs.add_arguments(command)
     command.add_argument("--output", metavar="FILE", action="append", default=[],
                          help="write the result: .stl .ply .obj .3mf .glb .vdb (repeatable)")
+    command.add_argument("--colours", choices=colours.KINDS, help="what mesh files are coloured by (not .stl)")
+    command.add_argument("--loose", choices=("keep", "drop"), default="keep",
+                         help="pieces that have come loose: keep them, or leave them out (default: keep)")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
     command.add_argument("--report", metavar="FILE.json", help="write a report")
     command.add_argument("--machine", metavar="FILE.json", help="speeds and accelerations of the machine, for its time")
@@ -50,15 +53,20 @@ def run(arguments: argparse.Namespace) -> int:
             mesh=arguments.report is not None,
             outputs=arguments.output,
             picture=arguments.picture,
+            colour=arguments.colours,
+            drop_loose=arguments.loose == "drop",
             progress=bar,
         )
     made = report.make(result, arguments.input, seconds_read, machine)
     if arguments.report is not None:
         report.write(made, arguments.report)
     inputs.print_notes(job)
+    told = [f"warning: line {piece.line}: {piece.text}" for piece in result.loose.pieces]
+    if result.loose.crumbs:
+        told.append(f"note: {result.loose.crumbs} crumbs of a few voxels are loose")
     inputs.print_findings([
         f"{finding.severity}: {f'{played.name}: ' if result.before else ''}line {finding.line}: {one_line(finding.text)}"
-        for played, simulation in (*result.before, (job, result.simulation)) for finding in simulation.findings])
+        for played, simulation in (*result.before, (job, result.simulation)) for finding in simulation.findings] + told)
     if sys.stdout.isatty():
         print(report.summary(made))
     return FINDINGS if result.failed else DONE

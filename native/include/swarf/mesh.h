@@ -133,6 +133,17 @@ SWARF_API const uint32_t *swarf_measures_shell_of(const swarf_measures *measures
 SWARF_API swarf_status swarf_mesh_create_shells(const swarf_mesh *mesh, const swarf_measures *measures,
                                                 const uint32_t *shells, size_t count, swarf_mesh **out);
 
+/** Cut a closed mesh by a plane into what lies against `normal` (below) and along it (above), each closed by caps; a
+ * side without material becomes an empty mesh. Volumes add up, but for the rounding of new vertices to floats.
+ *  SWARF_ERROR_GEOMETRY: not closed; SWARF_ERROR_ARGUMENT: not finite, no normal. */
+SWARF_API swarf_status swarf_mesh_split(const swarf_mesh *mesh, const double point[3], const double normal[3],
+                                        swarf_mesh **below, swarf_mesh **above);
+
+/** Thickness of the wall behind each triangle, in mm: the least of four rays straight into the material, from its
+ * middle and near its corners, to where the material ends. INFINITY: nowhere, or a triangle without area. `out`: one
+ * per triangle. */
+SWARF_API swarf_status swarf_mesh_thickness(const swarf_mesh *mesh, const swarf_progress *progress, float *out);
+
 /** The curves along which a plane cuts a mesh, as polylines. Owned by the caller; immutable. */
 typedef struct swarf_outline swarf_outline;
 /** Material on the left seen against `normal`. SWARF_ERROR_ARGUMENT: NULL, not finite, no normal. */

@@ -10,6 +10,7 @@
 #include "gcode.h"
 #include "history.h"
 #include "load.h"
+#include "lumps.h"
 #include "mesh.h"
 #include "placement.h"
 #include "program.h"

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Colours of a mesh's triangles: by operation, by deviation from the design, by wall thickness. Rows of (r, g, b)."""
+from __future__ import annotations
+
+import array
+import math
+from typing import Any, Optional, Sequence
+
+from ._native import Mesh, Solid, Surface, deviation_colours
+from .job import Job
+from .records import MOVE, SECTION, section_and_kind
+
+KINDS = ("operation", "deviation", "thickness")
+
+RGB = tuple[int, int, int]
+
+#: Told apart by most colour-blind people when neighbours in this order (after Okabe and Ito), on light and dark.
+OPERATIONS: Sequence[RGB] = ((61, 143, 209), (230, 159, 0), (42, 168, 118), (204, 111, 166), (213, 94, 0),
+                             (123, 127, 212), (163, 161, 41), (80, 183, 201))
+
+#: Of what no move made, and of what an earlier set-up made: bare and milled aluminium.
+FIRST_SHAPE: RGB = (188, 193, 199)
+EARLIER: RGB = (150, 158, 168)
+
+#: Least to greatest of a scale: thin is red, thick is blue.
+STOPS: Sequence[RGB] = ((184, 18, 31), (245, 133, 41), (252, 222, 102), (107, 204, 237), (41, 46, 158))
+
+#: What deviations are tinted on: about as light as a face towards the viewer.
+LIT = (225, 225, 225, 255)
+
+
+def _corners(mesh: Mesh) -> list[list[list[float]]]:
+    vertices = mesh.vertices.tolist()
+    return [[vertices[vertex] for vertex in triangle] for triangle in mesh.triangles.tolist()]
+
+
+def _fill(mesh: Mesh, colours: list[Optional[RGB]], otherwise: RGB) -> list[RGB]:
+    """Triangles without a colour (slivers, whose normals may be any) take that of a neighbour, as far as it reaches."""
+    unknown = [index for index, colour in enumerate(colours) if colour is None]
+    triangles = mesh.triangles.tolist() if unknown else []
+    beside: dict[tuple[int, int], list[int]] = {}
+    for index, (a, b, c) in enumerate(triangles):
+        for edge in ((a, b), (b, c), (c, a)):
+            beside.setdefault((min(edge), max(edge)), []).append(index)
+    while unknown:
+        known: dict[int, RGB] = {}
+        for index in unknown:
+            a, b, c = triangles[index]
+            for edge in ((a, b), (b, c), (c, a)):
+                near = [colours[other] for other in beside[min(edge), max(edge)] if colours[other] is not None]
+                if near and near[0] is not None:
+                    known[index] = near[0]
+                    break
+        if not known:
+            break
+        for index, colour in known.items():
+            colours[index] = colour
+        unknown = [index for index in unknown if index not in known]
+    return [otherwise if colour is None else colour for colour in colours]
+
+
+def by_operation(mesh: Mesh, surface: Surface, job: Job, moves: Optional[int] = None) -> list[RGB]:
+    """A colour for each operation of the job, one for all earlier set-ups, one for what no move made."""
+    records, sections = job.program.moves, job.program.sections
+    colours: list[Optional[RGB]] = []
+    for set_up, move, _ in mesh.origins(surface, moves=moves).tolist():
+        if move == -2:
+            colours.append(None)
+        elif move < 0 or set_up:
+            colours.append(FIRST_SHAPE if move < 0 else EARLIER)
+        else:
+            *_, section_kind = MOVE.unpack_from(records, move * MOVE.size)
+            operation = SECTION.unpack_from(sections, section_and_kind(section_kind)[0] * SECTION.size)[1]
+            colours.append(OPERATIONS[operation % len(OPERATIONS)])
+    return _fill(mesh, colours, FIRST_SHAPE)
+
+
+def by_deviation(mesh: Mesh, design: Mesh, tolerance: float) -> list[RGB]:
+    """Green within the tolerance (mm), by yellow to red where material is left, by cyan to blue where it is missing; of
+    the middles of the triangles."""
+    middles = [[sum(corner[k] for corner in corners) / 3 for k in range(3)] for corners in _corners(mesh)]
+    values = array.array("d", Solid(design).distance(middles)) if middles else array.array("d")
+    if not values:
+        return []
+    table = memoryview(values).cast("B").cast("d", (len(values), 1))
+    tinted = deviation_colours(table, bytes(LIT) * len(values), tolerance)
+    return [(tinted[i], tinted[i + 1], tinted[i + 2]) for i in range(0, len(tinted), 4)]
+
+
+def by_thickness(mesh: Mesh, most: Optional[float] = None) -> list[RGB]:
+    """Red where the wall is thinnest to blue where it is ``most`` mm or more (None: half the greatest extent)."""
+    values = mesh.thickness()
+    box = mesh.bounding_box
+    if most is None:
+        most = max(hi - lo for lo, hi in zip(*box)) / 2 if box else 1.0
+    return [_scale(value / most) for value in values]
+
+
+def _scale(part: float) -> RGB:
+    place = min(max(part, 0.0), 1.0) * (len(STOPS) - 1) if not math.isinf(part) else len(STOPS) - 1.0
+    low = min(int(place), len(STOPS) - 2)
+    r, g, b = (round(a + (place - low) * (b - a)) for a, b in zip(STOPS[low], STOPS[low + 1]))
+    return r, g, b
+
+
+def make(kind: str, mesh: Mesh, surface: Optional[Surface], job: Any, tolerance: float = 0.05) -> list[RGB]:
+    """Colours of one of KINDS of the mesh of a simulated job. ValueError where what it needs is missing."""
+    if kind == "operation":
+        if surface is None:
+            raise ValueError("colours by operation need the exact surface")
+        return by_operation(mesh, surface, job)
+    if kind == "deviation":
+        if job.design is None:
+            raise ValueError(f"{job.name}: colours by deviation need a design, and the job has none")
+        return by_deviation(mesh, job.design, tolerance)
+    if kind == "thickness":
+        return by_thickness(mesh)
+    raise ValueError(f"colours {kind!r}: wanted {', '.join(KINDS)}")

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Meshes in parts: pieces that hang together, planes in words."""
+from __future__ import annotations
+
+import math
+from typing import Any, Sequence
+
+from ._native import Mesh
+
+#: What a plane in words looks like.
+PLANE_HELP = "x=MM, y=MM, z=MM, or X,Y,Z,NX,NY,NZ: a point and the normal"
+
+
+def contains(outer: Any, inner: Any) -> bool:
+    """Whether a shell's box lies in another's."""
+    (outer_lo, outer_hi), (inner_lo, inner_hi) = outer.bounding_box, inner.bounding_box
+    return all(a <= b for a, b in zip(outer_lo, inner_lo)) and all(a >= b for a, b in zip(outer_hi, inner_hi))
+
+
+def pieces(shells: Sequence[Any]) -> list[list[int]]:
+    """Places of the shells of each piece, the largest piece first; a cavity belongs to the smallest solid round it."""
+    solids = sorted((i for i, shell in enumerate(shells) if shell.volume_mm3 > 0), key=lambda i: -shells[i].volume_mm3)
+    found = {i: [i] for i in solids}
+    for i, shell in enumerate(shells):
+        if shell.volume_mm3 <= 0:
+            round_it = [s for s in solids if contains(shells[s], shell)]
+            if round_it:
+                found[round_it[-1]].append(i)
+    return [found[i] for i in solids]
+
+
+def largest(mesh: Mesh) -> Mesh:
+    """The largest piece of a mesh alone; the mesh itself where it is one."""
+    found = pieces(mesh.shells())
+    return mesh if len(found) < 2 else mesh.keep_shells(found[0])
+
+
+def parse_plane(text: str) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Point and normal of a plane in words. ValueError."""
+    axis, equals, value = text.partition("=")
+    try:
+        numbers = [float(word) for word in (value if equals else text).split(",")]
+    except ValueError:
+        numbers = []
+    name = axis.strip().lower()
+    if all(map(math.isfinite, numbers)):
+        if equals and name in ("x", "y", "z") and len(numbers) == 1:
+            point, normal = ([number if name == letter else 0.0 for letter in "xyz"] for number in (numbers[0], 1.0))
+            return (point[0], point[1], point[2]), (normal[0], normal[1], normal[2])
+        if not equals and len(numbers) == 6 and math.hypot(*numbers[3:]) > 0:
+            return (numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5])
+    raise ValueError(f"plane {text!r}: wanted {PLANE_HELP}")
+
+
+def thinnest(mesh: Mesh) -> dict[str, Any]:
+    """The least wall thickness of a mesh, mm, and the middle of the triangle where it is; plain types."""
+    values = mesh.thickness()
+    if not len(values):
+        return {"least_mm": None, "place": None}
+    least, where = min((value, index) for index, value in enumerate(values))
+    if not math.isfinite(least):
+        return {"least_mm": None, "place": None}
+    corners = mesh.triangles[where:where + 1].tolist()[0]
+    points = [mesh.vertices[corner:corner + 1].tolist()[0] for corner in corners]
+    return {"least_mm": least, "place": [sum(point[k] for point in points) / 3 for k in range(3)]}

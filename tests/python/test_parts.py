@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Meshes in parts: split by planes, wall thickness, loose pieces and who freed them, colours of triangles."""
+import json
+import math
+
+import pytest
+
+import swarf
+from swarf import colours, parts, stocks
+from swarf.cli import main
+from swarf.job import Job
+
+LO, HI, VOXEL = (0.0, 0.0, -5.0), (30.0, 20.0, 0.0), 0.25
+BOX = {"kind": "box", "lo": LO, "hi": HI}
+
+#: A groove, then a cut to the bottom along it but for its last quarter, which line 9 takes; a corner is cut off by line 12.
+PROGRAM = """\
+T1 M6
+S8000 M3
+G0 X15 Y-5 Z5
+G1 Z-3 F200
+G1 Y25 F400
+G1 Z-5.5
+G1 Y8
+G1 Y4
+G1 Y-5
+G0 Z5
+G0 X30 Y9
+G1 Z-6 F200
+G1 X22 F400
+G1 Y22
+G0 Z5
+M2
+"""
+
+
+@pytest.fixture(scope="module", name="job")
+def fixture_job():
+    return Job(name="cut", program=swarf.Program.parse_gcode(PROGRAM), tools={1: swarf.Cutter("flat:d=2,l=20")}, stock=BOX,
+               design=swarf.Mesh.from_stock(swarf.Stock.box(LO, (14.0, 20.0, 0.0), VOXEL)))
+
+
+@pytest.fixture(scope="module", name="done")
+def fixture_done(job):
+    return swarf.simulate(job, voxel=VOXEL)
+
+
+def test_split(done, tmp_path, capsys):
+    below, above = done.mesh.split((0, 0, -3), (0, 0, 1))  # at the groove's floor, of which nothing is left
+    assert below.closed and above.closed
+    assert below.volume + above.volume == pytest.approx(done.mesh.volume, rel=1e-5)
+    assert above.volume / below.volume == pytest.approx(3 / 2, rel=2e-2)
+    with pytest.raises(swarf.GeometryError, match="only closed"):
+        swarf.Mesh(done.mesh.vertices, done.mesh.triangles.tolist()[1:]).split((0, 0, -3), (0, 0, 1))
+    with pytest.raises(ValueError, match="normal"):
+        done.mesh.split((0, 0, -3), (0, 0, 0))
+    done.mesh.write(tmp_path / "cut.ply")
+    words = ["mesh", str(tmp_path / "cut.ply"), "--output", str(tmp_path / "part.ply")]
+    assert main([*words, "--split-at", "z=-3"]) == 0
+    assert swarf.Mesh.read(tmp_path / "part-1.ply").volume == pytest.approx(below.volume, rel=1e-6)
+    assert swarf.Mesh.read(tmp_path / "part-2.ply").volume == pytest.approx(above.volume, rel=1e-6)
+    assert main([*words, "--split-at", "5,5,-2,1,0.5,0", "--split-at", "z=-1", "--split"]) == 0
+    files = sorted(tmp_path.glob("part-*.ply"))
+    volumes = [swarf.Mesh.read(file).volume for file in files]
+    assert len(files) == 8 and sum(volumes) == pytest.approx(done.mesh.volume, rel=1e-5)  # one of three pieces is cut
+    for words in (["--split-at", "z"], ["--split-at", "1,2,3,0,0,0"], ["--split-at", "q=3"]):
+        with pytest.raises(SystemExit):
+            main(["mesh", str(tmp_path / "cut.ply"), "--output", str(tmp_path / "p.ply"), *words])
+    capsys.readouterr()
+    assert main(["mesh", str(tmp_path / "cut.ply"), "--measure", "--split-at", "z=1"]) == 2
+    assert "give --output" in capsys.readouterr().err
+
+
+def test_thickness(done, tmp_path, capsys):
+    plate = stocks._box_mesh(((0, 0, 0), (20, 10, 1.5)))
+    values = plate.thickness()
+    assert values.format == "f" and len(values) == plate.triangle_count
+    assert sorted({round(value, 3) for value in values}) == [1.5, 10, 20]
+    thin = parts.thinnest(plate)
+    assert thin["least_mm"] == pytest.approx(1.5, abs=1e-4) and thin["place"][2] in (pytest.approx(0), pytest.approx(1.5))
+    path = tmp_path / "plate.ply"
+    plate.write(path)
+    assert main(["mesh", str(path), "--thickness", "--measure", "--output", str(tmp_path / "thick.ply")]) == 0
+    assert json.loads(capsys.readouterr().out)["thickness"]["least_mm"] == pytest.approx(1.5, abs=1e-4)
+    assert colours.by_thickness(plate, 1.5) == [colours.STOPS[-1]] * plate.triangle_count
+    assert parts.thinnest(swarf.Mesh([], []))["least_mm"] is None
+
+
+def test_loose_pieces_and_their_lines(done):
+    found = done.loose.pieces
+    assert [piece.line for piece in found] == [9, 14] and done.loose.crumbs == 0
+    assert found[0].operation == "T1" and found[0].move < found[1].move
+    volumes = [14 * 20 * 5, 30 * 20 * 5 - 14 * 20 * 5]  # left of the cut; right of it less kerf and corner
+    assert found[1].lump.volume_mm3 == pytest.approx(7 * 10 * 5, rel=0.1)
+    assert "this move frees it" in found[0].text
+    assert volumes[0] == pytest.approx(done.stock.lumps()[0][0].volume_mm3, rel=0.02)
+
+
+def test_loose_from_the_beginning(job):
+    two = swarf.Stock.box((0, 0, -5), (10, 20, 0), VOXEL)
+    other = swarf.Mesh.from_stock(swarf.Stock.box((12, 0, -5), (20, 20, 0), VOXEL))
+    mesh = swarf.Mesh.from_stock(two)
+    count = mesh.vertex_count
+    both = swarf.Mesh(mesh.vertices.tolist() + other.vertices.tolist(),
+                      mesh.triangles.tolist() + [[v + count for v in t] for t in other.triangles.tolist()])
+    late = swarf.simulate(Job(name="two", program=job.program, tools=job.tools, stock={"kind": "mesh", "mesh": both}),
+                          voxel=VOXEL)
+    assert late.loose.pieces[0].move == -1 and "before the program" in late.loose.pieces[0].text
+
+
+def test_drop(job, tmp_path, capsys):
+    kept = swarf.simulate(job, voxel=VOXEL, drop_loose=True, outputs=[str(tmp_path / "part.vdb")])
+    assert len(kept.stock.lumps()[0]) == 1 and len(kept.mesh.shells()) == 1
+    assert kept.mesh.volume == pytest.approx(14 * 20 * 5, rel=1e-3)
+    assert swarf.Stock.read(tmp_path / "part.vdb").volume() == pytest.approx(14 * 20 * 5, rel=1e-2)
+    program = tmp_path / "cut.nc"
+    program.write_text(PROGRAM)
+    status = main(["simulate", str(program), "--stock", "box:0,0,-5,30,20,0", "--tool", "1=flat:d=2,l=20", "--voxel", "0.25",
+                   "--loose", "drop", "--colours", "operation", "--output", str(tmp_path / "part.ply"),
+                   "--report", str(tmp_path / "report.json")])
+    assert status == 0 and "line 9: a piece of" in capsys.readouterr().err
+    assert swarf.Mesh.read(tmp_path / "part.ply").volume == pytest.approx(14 * 20 * 5, rel=1e-3)
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert [piece["line"] for piece in report["loose_pieces"]] == [9, 14]
+
+
+def test_colours(done, job):
+    tints = colours.make("operation", done.mesh, done.surface, job)
+    assert set(tints) == {colours.FIRST_SHAPE, colours.OPERATIONS[0]}
+    cut = 0.0
+    vertices = done.mesh.vertices.tolist()
+    for tint, triangle in zip(tints, done.mesh.triangles.tolist()):
+        xs = [vertices[v][0] for v in triangle]
+        if tint == colours.OPERATIONS[0] and max(xs) - min(xs) < 1e-3 and xs[0] < 15:
+            a, b, c = (vertices[v] for v in triangle)
+            cut += abs((b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])) / 2
+    assert cut == pytest.approx(20 * 5, rel=1e-2)  # the wall left of the cut, in two steps
+    tints = colours.make("deviation", done.mesh, done.surface, job, 0.05)
+    assert len(tints) == done.mesh.triangle_count and len(set(tints)) > 1
+    for kind in ("operation", "deviation"):
+        with pytest.raises(ValueError, match="colours by " + kind):
+            colours.make(kind, done.mesh, None, Job(name="none", program=job.program))
+    with pytest.raises(ValueError, match="wanted operation"):
+        colours.make("rainbow", done.mesh, None, job)
+    assert math.isclose(sum(colours._scale(0.0)), sum(colours.STOPS[0]))
+
+
+def test_lumps(done):
+    lumps, places = done.stock.lumps([(5, 10, -2), (15, 10, -2), (18, 5, -2)])
+    assert len(lumps) == 3 and places[0] == 0 and places[1] is None and places[2] in (1, 2)
+    assert sum(lump.volume_mm3 for lump in lumps) == pytest.approx(done.stock.volume(), rel=0.02)
+    with pytest.raises(ValueError, match="points"):
+        done.stock.lumps([(1, 2)])

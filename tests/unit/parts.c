@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Meshes split by planes, thickness of walls, and lumps of stocks, against closed forms. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "shapes.h"
+#include "test.h"
+
+static const double pi = 3.14159265358979323846;
+
+static swarf_mesh *mesh_of(shape *s)
+{
+    const swarf_triangles triangles = shape_view(s);
+    swarf_mesh *mesh = NULL;
+    CHECK_OK(swarf_mesh_create(&triangles, &mesh));
+    shape_free(s);
+    return mesh;
+}
+
+static void check_closed(const swarf_mesh *mesh)
+{
+    const swarf_topology t = swarf_mesh_topology(mesh);
+    CHECK(t.boundary_edges == 0 && t.nonmanifold_edges == 0 && t.misoriented_edges == 0 && t.degenerate == 0);
+}
+
+/* Both parts closed, on their sides, their volumes and boxes as expected; `below` NAN: only that they add up. */
+static void check_split(const swarf_mesh *mesh, const double point[3], const double normal[3], double below)
+{
+    const double volume = swarf_mesh_topology(mesh).volume_mm3;
+    swarf_mesh *part[2] = {NULL, NULL};
+    if (!CHECK_OK(swarf_mesh_split(mesh, point, normal, &part[0], &part[1]))) return;
+    double sum = 0;
+    const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    for (int i = 0; i < 2; i++) {
+        check_closed(part[i]);
+        sum += swarf_mesh_topology(part[i]).volume_mm3;
+        const swarf_triangles t = swarf_mesh_triangles(part[i]);
+        double beyond = 0;
+        for (size_t v = 0; v < t.vertex_count; v++) {
+            double height = 0;
+            for (size_t k = 0; k < 3; k++) height += ((double)t.xyz[3 * v + k] - point[k]) * normal[k] / length;
+            beyond = fmax(beyond, i ? -height : height);
+        }
+        CHECK(beyond < 1e-4);
+    }
+    CHECK_NEAR(sum, volume, 1e-5 * fabs(volume));
+    if (!isnan(below)) CHECK_NEAR(swarf_mesh_topology(part[0]).volume_mm3, below, 1e-5 * fabs(volume));
+    swarf_mesh_release(part[0]);
+    swarf_mesh_release(part[1]);
+}
+
+static void check_splits(void)
+{
+    const double lo[3] = {1, 2, 3}, hi[3] = {11, 8, 7};
+    shape s = {0};
+    shape_box(&s, lo, hi);
+    swarf_mesh *box = mesh_of(&s);
+    check_split(box, (double[]){0, 0, 4.5}, (double[]){0, 0, 2}, 10 * 6 * 1.5);
+    check_split(box, (double[]){0, 0, 4.5}, (double[]){0, 0, -1}, 10 * 6 * 2.5);
+    check_split(box, (double[]){6, 5, 5}, (double[]){1, 0.3, -0.2}, 120);
+    check_split(box, lo, (double[]){0.6, 1, 0}, 0.5 * 0 + 0);       /* through an edge, nothing below */
+    check_split(box, lo, (double[]){0.6, -1, 0}, 4 * 0.5 * 10 * 6); /* through two edges: a diagonal */
+    check_split(box, (double[]){0, 0, 3}, (double[]){0, 0, 1}, 0);  /* a face in the plane */
+    check_split(box, (double[]){0, 0, 7}, (double[]){0, 0, 1}, 240);
+    check_split(box, (double[]){0, 0, 99}, (double[]){0, 0, 1}, 240);
+    swarf_mesh_release(box);
+
+    /* a hollow ball: the cap is a ring; beside it a bar and, in the ball's cavity, another ball */
+    const double centre[3] = {5, -7, 3}, base[3] = {20, 0, 0};
+    shape_ball(&s, centre, 3, 60);
+    const size_t outside = s.triangles;
+    shape_ball(&s, centre, 2, 60);
+    shape_flip(&s, outside);
+    shape_ball(&s, centre, 1, 60);
+    shape_cylinder(&s, base, 1, 5, 200);
+    swarf_mesh *mesh = mesh_of(&s);
+    const double balls = 4 * pi / 3 * (27 - 8 + 1);
+    swarf_mesh *below = NULL, *above = NULL;
+    if (CHECK_OK(swarf_mesh_split(mesh, centre, (double[]){1, 0, 0}, &below, &above))) {
+        CHECK_NEAR(swarf_mesh_topology(below).volume_mm3, 0.5 * balls, 5e-3 * balls);
+        swarf_mesh_release(below);
+        swarf_mesh_release(above);
+    }
+    test_random random = test_random_begin(77);
+    for (int i = 0; i < 60; i++) {
+        double point[3], normal[3];
+        for (int k = 0; k < 3; k++) {
+            point[k] = test_random_in(&random, centre[k] - 2, centre[k] + 2);
+            normal[k] = test_random_in(&random, -1, 1);
+        }
+        check_split(mesh, point, normal, NAN);
+    }
+    swarf_mesh_release(mesh);
+}
+
+/* The mesh of a plate with a grid of drilled holes and a pocket, cut at its faces and between. */
+static void check_plate(void)
+{
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = 0.25;
+    const swarf_box block = {{0, 0, -6}, {40, 30, 0}};
+    swarf_stock *stock = NULL;
+    swarf_program *program = NULL;
+    swarf_cutter *cutter = NULL;
+    swarf_mesh *mesh = NULL;
+    swarf_surface *surface = NULL;
+    CHECK_OK(swarf_cutter_parse("flat:d=3,l=20", &cutter));
+    CHECK_OK(swarf_stock_create_box(&block, &options, &stock));
+    CHECK_OK(swarf_program_create((double[]){0, 0, 9}, &program));
+    CHECK_OK(swarf_program_add_operation(program, "holes"));
+    CHECK_OK(swarf_program_set_section(program, &(swarf_section){.tool = 1}));
+    for (int i = 0; i < 20; i++) {
+        const double x = 4 + 8 * (i % 5), y = 4 + 7 * (i / 5), depth = i < 15 ? -7 : -3;
+        CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_RAPID, (double[]){x, y, 9}, 0, 1));
+        CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_FEED, (double[]){x, y, depth}, 100, 2));
+        CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_RAPID, (double[]){x, y, 9}, 0, 3));
+    }
+    const swarf_tool tool = {1, 0, cutter};
+    swarf_simulation *played = NULL;
+    CHECK_OK(swarf_surface_create(stock, program, &tool, 1, NULL, &surface));
+    CHECK_OK(swarf_stock_simulate(stock, program, 0, swarf_program_move_count(program), &tool, 1, NULL, NULL, &played));
+    swarf_simulation_destroy(played);
+    swarf_contour_options wanted = swarf_contour_options_default();
+    wanted.error_mm = 0.002;
+    wanted.surface = surface;
+    wanted.moves = SIZE_MAX;
+    if (CHECK_OK(swarf_mesh_contour(stock, &wanted, NULL, &mesh, NULL))) {
+        const double hole = pi * 1.5 * 1.5, lower = 3 * (40 * 30 - 15 * hole);
+        swarf_mesh *below = NULL, *above = NULL;
+        /* at the floors of the blind holes, which lie in the plane, and a little higher and lower */
+        for (int i = -1; i <= 1; i++) {
+            const double point[3] = {0, 0, -3 + 0.01 * i};
+            CHECK_OK(swarf_mesh_split(mesh, point, (double[]){0, 0, 1}, &below, &above));
+            check_closed(below);
+            check_closed(above);
+            const double under = swarf_mesh_topology(below).volume_mm3, over = swarf_mesh_topology(above).volume_mm3;
+            CHECK_NEAR(under + over, swarf_mesh_topology(mesh).volume_mm3, 1e-5 * lower);
+            CHECK_NEAR(under, lower + 0.01 * i * (40 * 30 - (i > 0 ? 20 : 15) * hole), 1e-3 * lower);
+            swarf_mesh_release(below);
+            swarf_mesh_release(above);
+        }
+        test_random random = test_random_begin(78);
+        for (int i = 0; i < 20; i++) {
+            const double point[3] = {test_random_in(&random, 5, 35), test_random_in(&random, 5, 25), -3};
+            const double normal[3] = {test_random_in(&random, -1, 1), test_random_in(&random, -1, 1),
+                                      test_random_in(&random, -0.4, 0.4)};
+            check_split(mesh, point, normal, NAN);
+        }
+        swarf_mesh_release(mesh);
+    }
+    swarf_surface_release(surface);
+    swarf_program_release(program);
+    swarf_cutter_release(cutter);
+    swarf_stock_destroy(stock);
+}
+
+static void check_errors(void)
+{
+    shape s = {0};
+    shape_box(&s, (double[]){0, 0, 0}, (double[]){1, 1, 1});
+    s.triangles--;
+    swarf_mesh *open = mesh_of(&s), *below = NULL, *above = NULL;
+    CHECK_FAILS(swarf_mesh_split(open, (double[]){0, 0, 0.5}, (double[]){0, 0, 1}, &below, &above),
+                SWARF_ERROR_GEOMETRY, "only closed meshes");
+    CHECK_FAILS(swarf_mesh_split(open, (double[]){0, 0, NAN}, (double[]){0, 0, 1}, &below, &above),
+                SWARF_ERROR_ARGUMENT, "not finite");
+    CHECK_FAILS(swarf_mesh_split(open, (double[]){0, 0, 0}, (double[]){0, 0, 0}, &below, &above), SWARF_ERROR_ARGUMENT,
+                "no length");
+    CHECK(!below && !above);
+    swarf_mesh_release(open);
+}
+
+/* ---- thickness ---- */
+
+static float *thickness_of(const swarf_mesh *mesh)
+{
+    float *out = malloc((swarf_mesh_triangles(mesh).triangle_count + 1) * sizeof *out);
+    CHECK_OK(swarf_mesh_thickness(mesh, NULL, out));
+    return out;
+}
+
+static void check_thickness(void)
+{
+    /* a plate, far from the origin: its three thicknesses */
+    shape s = {0};
+    shape_box(&s, (double[]){500, 500, 500}, (double[]){530, 520, 501.5});
+    swarf_mesh *mesh = mesh_of(&s);
+    float *found = thickness_of(mesh);
+    const swarf_triangles t = swarf_mesh_triangles(mesh);
+    for (size_t i = 0; i < t.triangle_count; i++) {
+        double lo[3] = {1e9, 1e9, 1e9}, hi[3] = {0};
+        for (size_t c = 0; c < 9; c++) {
+            const double at = (double)t.xyz[3 * (size_t)t.index[3 * i + c / 3] + c % 3];
+            lo[c % 3] = fmin(lo[c % 3], at);
+            hi[c % 3] = fmax(hi[c % 3], at);
+        }
+        const double size[3] = {30, 20, 1.5};
+        for (int k = 0; k < 3; k++)
+            if (lo[k] == hi[k]) CHECK_NEAR((double)found[i], size[k], 2e-3);
+    }
+    free(found);
+    swarf_mesh_release(mesh);
+
+    /* a tube: its wall, less what the facets' sagitta leaves out */
+    const int sides = 240;
+    shape_cylinder(&s, (double[]){0, 0, 0}, 10, 30, sides);
+    const size_t outside = s.triangles;
+    shape_cylinder(&s, (double[]){0, 0, 5}, 8, 20, sides);
+    shape_flip(&s, outside);
+    mesh = mesh_of(&s);
+    found = thickness_of(mesh);
+    float least = INFINITY;
+    for (size_t i = 0; i < swarf_mesh_triangles(mesh).triangle_count; i++) least = fminf(least, found[i]);
+    CHECK_NEAR((double)least, 2, 10 * (1 - cos(pi / sides)) + 1e-3);
+    free(found);
+    swarf_mesh_release(mesh);
+
+    /* a wedge of 20 degrees: rays from its lower face meet the slope at x tan 20 */
+    const double slope = tan(20 * pi / 180);
+    for (int side = 0; side < 2; side++) {
+        const double y = side ? 10 : 0;
+        shape_vertex(&s, 0, y, 0);
+        shape_vertex(&s, 10, y, 0);
+        shape_vertex(&s, 10, y, 10 * slope);
+    }
+    const size_t wedge[8][3] = {{0, 1, 2}, {3, 5, 4}, {0, 4, 1}, {0, 3, 4}, {1, 4, 5}, {1, 5, 2}, {0, 2, 5}, {0, 5, 3}};
+    for (int i = 0; i < 8; i++) shape_triangle(&s, wedge[i][0], wedge[i][1], wedge[i][2]);
+    mesh = mesh_of(&s);
+    CHECK(swarf_mesh_topology(mesh).closed && swarf_mesh_topology(mesh).volume_mm3 > 0);
+    found = thickness_of(mesh);
+    /* from near the corner at x = 0: the corners at x = 10 weigh a hundredth each */
+    CHECK_NEAR((double)found[2], slope * 0.02 * 10, 1e-4);
+    CHECK_NEAR((double)found[3], slope * 0.01 * 10, 1e-4);
+    free(found);
+    swarf_mesh_release(mesh);
+}
+
+/* ---- lumps ---- */
+
+static void check_lumps(void)
+{
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = 0.1;
+    const swarf_box block = {{0, 0, -3}, {30, 20, 0}};
+    swarf_stock *stock = NULL;
+    swarf_cutter *cutter = NULL;
+    CHECK_OK(swarf_cutter_parse("flat:d=2,l=20", &cutter));
+    CHECK_OK(swarf_stock_create_box(&block, &options, &stock));
+    swarf_lumps *lumps = NULL;
+    size_t count = 0;
+    const double points[3][3] = {{5, 10, -1}, {25, 10, -1}, {15, 10, 3}};
+    uint32_t lump_of[3];
+    CHECK_OK(swarf_lumps_create(stock, points[0], 3, NULL, lump_of, &lumps));
+    const swarf_lump *lump = swarf_lumps_get(lumps, &count);
+    CHECK(count == 1 && lump->voxels == 300 * 200 * 30);
+    CHECK_NEAR(lump->volume_mm3, 1800, 1e-6);
+    CHECK(lump_of[0] == 0 && lump_of[1] == 0 && lump_of[2] == UINT32_MAX);
+    swarf_lumps_destroy(lumps);
+
+    /* cut through but for a bridge a tenth thick, then through the bridge */
+    swarf_path path = {.start = {15, -5, -2.9}, .end = {15, 25, -2.9}, .has_motion = 1};
+    CHECK_OK(swarf_stock_cut(stock, cutter, &path, 1, NULL));
+    CHECK_OK(swarf_lumps_create(stock, points[0], 3, NULL, lump_of, &lumps));
+    (void)swarf_lumps_get(lumps, &count);
+    CHECK(count == 1 && lump_of[0] == lump_of[1]);
+    swarf_lumps_destroy(lumps);
+    path.start[2] = path.end[2] = -3.2;
+    CHECK_OK(swarf_stock_cut(stock, cutter, &path, 1, NULL));
+    CHECK_OK(swarf_lumps_create(stock, points[0], 3, NULL, lump_of, &lumps));
+    lump = swarf_lumps_get(lumps, &count);
+    CHECK(count == 2 && lump_of[0] != lump_of[1] && lump_of[2] == UINT32_MAX);
+    for (size_t i = 0; i < count; i++) {
+        CHECK_NEAR(lump[i].volume_mm3, 14 * 20 * 3, 0.1 * 20 * 3);
+        CHECK_NEAR(lump[i].box.hi[0] - lump[i].box.lo[0], 14, 0.11);
+        float value = 0;
+        CHECK_OK(swarf_stock_sample(stock, lump[i].inside, 1, &value));
+        CHECK(value < 0);
+    }
+    swarf_lumps_destroy(lumps);
+    CHECK_FAILS(swarf_lumps_create(NULL, NULL, 0, NULL, NULL, &lumps), SWARF_ERROR_ARGUMENT, "NULL");
+    swarf_cutter_release(cutter);
+    swarf_stock_destroy(stock);
+}
+
+int main(void)
+{
+    check_splits();
+    check_plate();
+    check_errors();
+    check_thickness();
+    check_lumps();
+    return test_end();
+}
