@@ -45,7 +45,7 @@ static void mend(double rows[3][3])
 swarf_status swarf_placement_create(const double rows[12], swarf_placement *out)
 {
     SWARF_REQUIRE(rows && out, "placement: NULL");
-    swarf_placement made;
+    swarf_placement made = {0};
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 4; k++)
             SWARF_REQUIRE(isfinite(rows[4 * i + k]), "placement: row %d, column %d is not finite", i, k);

@@ -25,6 +25,31 @@ def menu_texts():
     return found
 
 
+def check_export(obj):
+    """The panel, its estimates, a coloured file, and an error told in it."""
+    from freecad.swarf_cam.gui import exporting
+
+    Gui.runCommand("Swarf_Export", 0)
+    pump(0.3)
+    assert Gui.getMainWindow().findChild(QtWidgets.QWidget, "SwarfExportPanel") is not None
+    screenshot("export.png")
+    Gui.Control.closeDialog()
+    pump(0.2)
+    opened = exporting.show_panel(obj)
+    opened.kind.setCurrentIndex(opened.kind.findData(".ply"))
+    opened.colour.setCurrentIndex(opened.colour.findData("operation"))
+    assert "triangles" in opened.estimate.text()
+    opened.start(os.path.join(OUT, "no", "folder.ply"))
+    wait_for(lambda: not opened.working, "a folder that is not there")
+    assert "folder.ply" in opened.message.text(), opened.message.text()
+    path = os.path.join(OUT, "stock.ply")
+    opened.start(path)
+    wait_for(lambda: opened.closed, "export")
+    with open(path, "rb") as file:
+        assert b"red" in file.read(600)
+    pump(0.2)
+
+
 def check():
     """All of it, in the order of a user."""
     import samples
@@ -98,6 +123,8 @@ def check():
     wait_for(lambda: obj.UpToDate, "update")
     pump(0.3)
     assert obj.VolumeRemoved.Value > 1000, obj.VolumeRemoved
+
+    check_export(obj)
 
     cam = "CAMWorkbench" if "CAMWorkbench" in Gui.listWorkbenches() else "PathWorkbench"
     Gui.activateWorkbench(cam)

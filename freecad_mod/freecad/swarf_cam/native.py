@@ -148,7 +148,7 @@ def to_job(data):
 @dataclass
 class Result:
     """What a simulation came to; volumes in mm3. stock_file and mesh_file lie in the folder that was given.
-    excess and gouge are None without a design."""
+    excess and gouge are None without a design; colours: (r, g, b) of each triangle of the mesh, by operation."""
 
     stock_file: str
     mesh_file: str
@@ -162,6 +162,7 @@ class Result:
     findings: list = field(default_factory=list)
     errors: int = 0
     seconds: float = 0.0
+    colours: list = field(default_factory=list)
 
 
 def default_voxel(lo, hi):
@@ -199,8 +200,41 @@ def simulate(data, voxel_mm, folder, progress=None):
     findings = ["%s: operation '%s', command %d: %s" % (
         item.severity, names[item.operation] if 0 <= item.operation < len(names) else "-", item.line, item.text)
         for item in outcome.findings]
+    findings += ["warning: operation '%s', command %d: %s" % (piece.operation or "-", piece.line, piece.text)
+                 for piece in done.loose.pieces]
+    colours = importlib.import_module(swarf.__name__ + ".colours").make("operation", done.mesh, done.surface, done.job)
     return Result(
         stock_file, mesh_file, len(data.moves), list(names), list(outcome.removed_by_operation),
         outcome.volume_initial, outcome.volume_final, comparison.excess_mm3 if comparison else None,
         comparison.gouge_mm3 if comparison else None, findings,
-        sum(item.severity == "error" for item in outcome.findings), done.seconds["total"])
+        sum(item.severity == "error" for item in outcome.findings), done.seconds["total"], colours)
+
+
+# Error of a mesh where nobody says, in voxels: swarf.simulate's own.
+MESH_ERROR_VOXELS = 0.1
+
+
+def export(data, stock_file, path, error_mm=None, budget=0, colour=None, largest=False, progress=None):
+    """Write the mesh of what is left of a JobData's stock, a .vdb file, on the exact surface -> number of triangles.
+
+    error_mm: vertices are left out up to this (None: 0.1 voxels); budget: no more triangles, if the error allows;
+    colour: "operation", "deviation" or "thickness"; largest: the largest piece alone. progress as simulate(). Any thread.
+    JobError where nothing is left, or no mesh is that small; swarf.Error, OSError.
+    """
+    swarf = load()
+    stocks, colours, parts = (importlib.import_module("%s.%s" % (swarf.__name__, name))
+                              for name in ("stocks", "colours", "parts"))
+    job = to_job(data)
+    left = swarf.Stock.read(stock_file)
+    surface = stocks.make_first(job.stock, voxel=left.voxel).surface(job.program, job.tools)
+    mesh = swarf.Mesh.from_stock(left, MESH_ERROR_VOXELS * left.voxel if error_mm is None else error_mm, budget=budget,
+                                 surface=surface, progress=progress)
+    if not mesh.triangle_count:
+        raise JobError("nothing is left of the stock")
+    if not mesh.contour.budget_met:
+        raise JobError("%d triangles are the fewest within this error; allow more of them, or a greater error"
+                       % mesh.triangle_count)
+    if largest:
+        mesh = parts.largest(mesh)
+    mesh.write(path, colors=colours.make(colour, mesh, surface, job) if colour else None)
+    return mesh.triangle_count

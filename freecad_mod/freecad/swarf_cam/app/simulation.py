@@ -36,6 +36,8 @@ PROPERTIES = (
      QT_TRANSLATE_NOOP("App::Property", "Whether the results belong to the job as it is now"), READ_ONLY),
     ("Stock", "App::PropertyFileIncluded", "Results",
      QT_TRANSLATE_NOOP("App::Property", "What is left of the stock, an OpenVDB level set"), HIDDEN),
+    ("FaceColours", "App::PropertyColorList", "Results",
+     QT_TRANSLATE_NOOP("App::Property", "Colours of the triangles, by operation"), HIDDEN),
     ("VolumeInitial", "App::PropertyVolume", "Results",
      QT_TRANSLATE_NOOP("App::Property", "Volume of the stock before"), READ_ONLY),
     ("VolumeRemoved", "App::PropertyVolume", "Results",
@@ -244,6 +246,9 @@ def store(obj, prepared, result):
     _give_copies_their_own_file(obj)
     obj.Stock = (result.stock_file, obj.Name + ".vdb")
     obj.Mesh = Mesh.Mesh(result.mesh_file)
+    # a mesh that FreeCAD mended has other triangles
+    whole = len(result.colours) == obj.Mesh.CountFacets
+    obj.FaceColours = [tuple(part / 255 for part in colour) for colour in result.colours] if whole else []
     obj.VolumeInitial = result.volume_initial
     obj.VolumeFinal = result.volume_final
     obj.VolumeRemoved = result.volume_initial - result.volume_final

@@ -12,7 +12,7 @@ from ..app import simulation
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
-NAMES = ["Swarf_Live", "Swarf_Simulate", "Swarf_Update"]
+NAMES = ["Swarf_Live", "Swarf_Simulate", "Swarf_Update", "Swarf_Export"]
 
 
 def chosen_job():
@@ -114,6 +114,32 @@ class Update:
         show_panel(obj.Job, obj, start=True)
 
 
+class Export:
+    """Write what is left into a file."""
+
+    def GetResources(self):
+        """Texts and icon."""
+        return {"Pixmap": os.path.join(ICONS, "swarf-export.svg"),
+                "MenuText": QT_TRANSLATE_NOOP("Swarf_Export", "Export stock"),
+                "ToolTip": QT_TRANSLATE_NOOP("Swarf_Export", "Write what is left of the stock as a mesh with sharp edges, "
+                                                             "a shape or a level set")}
+
+    def IsActive(self):
+        """Whenever a simulation with a result is chosen."""
+        try:
+            chosen = chosen_simulation()
+            return (native.is_available() and not Gui.Control.activeDialog() and chosen is not None
+                    and bool(chosen.Stock))
+        except (AttributeError, ReferenceError, RuntimeError):
+            return False
+
+    def Activated(self):
+        """Open the panel."""
+        from .exporting import show_panel
+
+        show_panel(chosen_simulation())
+
+
 class CamEntries:
     """Puts the commands beside FreeCAD's own simulators in the CAM workbench; from FreeCAD 0.21 on."""
 
@@ -153,6 +179,7 @@ def register():
     Gui.addCommand("Swarf_Live", Live())
     Gui.addCommand("Swarf_Simulate", Simulate())
     Gui.addCommand("Swarf_Update", Update())
+    Gui.addCommand("Swarf_Export", Export())
     if hasattr(Gui, "addWorkbenchManipulator"):
         Gui.addWorkbenchManipulator(CamEntries())
     else:

@@ -26,3 +26,11 @@ def place_of(event):
     """(x, y) of a mouse event in its widget, in device-independent pixels."""
     point = event.position() if hasattr(event, "position") else event.localPos()
     return point.x(), point.y()
+
+
+def choice():
+    """A QComboBox that does not widen its panel for a long text."""
+    box = QtWidgets.QComboBox()
+    box.setSizeAdjustPolicy(QtWidgets.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+    box.setMinimumContentsLength(10)
+    return box

@@ -9,7 +9,7 @@ import FreeCADGui as Gui
 from .. import native
 from ..app import setups, simulation
 from ..core.errors import JobError
-from .qt import QtWidgets, flags
+from .qt import QtWidgets, choice, flags
 from .slices import Slices
 from .worker import Worker
 
@@ -39,7 +39,7 @@ class StockChoice:
 
     def __init__(self, job):
         self.job = job
-        self.source, self.lie = QtWidgets.QComboBox(), QtWidgets.QComboBox()
+        self.source, self.lie = choice(), choice()
         self.source.setObjectName("SwarfStockFrom")
         self.lie.setObjectName("SwarfStockLie")
         self._simulations = simulation.possible_previous(job)

@@ -4,6 +4,10 @@
     <context>
         <name>App::Property</name>
         <message>
+            <source>Colours of the triangles, by operation</source>
+            <translation>Farben der Dreiecke, nach Bearbeitung</translation>
+        </message>
+        <message>
             <source>Edge of a voxel: the finer, the more exact, the slower</source>
             <translation>Kante eines Voxels: je feiner, desto genauer und langsamer</translation>
         </message>
@@ -109,6 +113,10 @@
         <message>
             <source>98 % lie within</source>
             <translation>98 % liegen in</translation>
+        </message>
+        <message>
+            <source>; too many for a shape, allow a greater error</source>
+            <translation>; zu viele für eine Form, größeren Fehler erlauben</translation>
         </message>
         <message>
             <source>A holder of the library, or form:r/z:r/z... from its lower face up, in mm</source>
@@ -259,6 +267,10 @@
             <translation>Schließen</translation>
         </message>
         <message>
+            <source>Colours</source>
+            <translation>Farben</translation>
+        </message>
+        <message>
             <source>Copy the picture</source>
             <translation>Bild kopieren</translation>
         </message>
@@ -311,6 +323,10 @@
             <translation>Fehler</translation>
         </message>
         <message>
+            <source>Export stock</source>
+            <translation>Rohteil exportieren</translation>
+        </message>
+        <message>
             <source>FAILED</source>
             <translation>NICHT BESTANDEN</translation>
         </message>
@@ -337,6 +353,10 @@
         <message>
             <source>Folder for the frames of the animation</source>
             <translation>Ordner für die Bilder der Animation</translation>
+        </message>
+        <message>
+            <source>Format</source>
+            <translation>Format</translation>
         </message>
         <message>
             <source>From the tool's tip to the holder</source>
@@ -563,6 +583,10 @@
             <translation>Bild speichern ...</translation>
         </message>
         <message>
+            <source>Section</source>
+            <translation>Schnitt</translation>
+        </message>
+        <message>
             <source>Select the solids or meshes that hold the stock in FreeCAD's tree or 3D view first.</source>
             <translation>Zuerst die Körper oder Netze, die das Rohteil halten, in FreeCADs Baum oder 3D-Ansicht wählen.</translation>
         </message>
@@ -670,6 +694,12 @@
             <source>Swarf: close the open task first
 </source>
             <translation>Swarf: schließen Sie zuerst die offene Aufgabe
+</translation>
+        </message>
+        <message>
+            <source>Swarf: written: {0}, {1:.2f} MB
+</source>
+            <translation>Swarf: geschrieben: {0}, {1:.2f} MB
 </translation>
         </message>
         <message>
@@ -803,6 +833,10 @@
             <translation>Geschrieben: {0}</translation>
         </message>
         <message>
+            <source>about {0:,} triangles, {1:.2f} MB</source>
+            <translation>etwa {0:,} Dreiecke, {1:.2f} MB</translation>
+        </message>
+        <message>
             <source>as before</source>
             <translation>wie bisher</translation>
         </message>
@@ -811,12 +845,28 @@
             <translation>wie das Modell des Auftrags</translation>
         </message>
         <message>
+            <source>by deviation from the model</source>
+            <translation>nach Abweichung vom Modell</translation>
+        </message>
+        <message>
+            <source>by operation</source>
+            <translation>nach Bearbeitung</translation>
+        </message>
+        <message>
+            <source>by wall thickness</source>
+            <translation>nach Wandstärke</translation>
+        </message>
+        <message>
+            <source>leave loose pieces out</source>
+            <translation>lose Stücke weglassen</translation>
+        </message>
+        <message>
             <source>max</source>
             <translation>max.</translation>
         </message>
         <message>
             <source>none</source>
-            <translation>keiner</translation>
+            <translation>keine</translation>
         </message>
         <message>
             <source>passed</source>
@@ -863,12 +913,27 @@
             <translation>{0:.0f} Voxel entlang der längsten Kante, bis zu {1}</translation>
         </message>
         <message>
+            <source>{0:.2f} MB</source>
+            <translation>{0:.2f} MB</translation>
+        </message>
+        <message>
             <source>{0:.2f} cm³</source>
             <translation>{0:.2f} cm³</translation>
         </message>
         <message>
             <source>{0:.3f} mm</source>
             <translation>{0:.3f} mm</translation>
+        </message>
+    </context>
+    <context>
+        <name>Swarf_Export</name>
+        <message>
+            <source>Export stock</source>
+            <translation>Rohteil exportieren</translation>
+        </message>
+        <message>
+            <source>Write what is left of the stock as a mesh with sharp edges, a shape or a level set</source>
+            <translation>Schreibt, was vom Rohteil übrig ist, als Netz mit scharfen Kanten, als Form oder als Level-Set</translation>
         </message>
     </context>
     <context>

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is left of the stock as a model: mesh files on the exact surface, solids for CAD, section wires."""
+
+import math
+import os
+import shutil
+import tempfile
+
+import FreeCAD
+import Mesh
+import Part
+
+from .. import native
+from ..core import steps
+from ..core.errors import JobError
+from . import job as jobs
+from . import setups
+
+MESH_SUFFIXES = (".stl", ".ply", ".obj", ".3mf", ".glb")
+STOCK_SUFFIXES = (".vdb",)
+SHAPE_SUFFIXES = (".step", ".stp", ".brep", ".brp")
+
+# A shape has a face per flat piece of the mesh; beyond this FreeCAD takes minutes, and what it gives is of no use.
+SHAPE_TRIANGLES_MAX = 20000
+
+# Bytes of a file per triangle, about, without and with colours; a mesh has half as many vertices.
+BYTES = {".stl": (50, 50), ".ply": (19, 22), ".obj": (33, 42), ".3mf": (15, 18), ".glb": (18, 30), ".step": (900, 900),
+         ".stp": (900, 900), ".brep": (450, 450), ".brp": (450, 450)}
+
+
+def suffix_of(path):
+    """Suffix in lower case. JobError unless a stock can be written as that."""
+    suffix = os.path.splitext(path)[1].lower()
+    known = MESH_SUFFIXES + STOCK_SUFFIXES + SHAPE_SUFFIXES
+    if suffix not in known:
+        raise JobError("%s: a stock is written as %s" % (path, ", ".join(known)))
+    return suffix
+
+
+def default_error(obj):
+    """Error of a mesh where nobody says, mm: that of the mesh in the document."""
+    return native.MESH_ERROR_VOXELS * obj.VoxelSize.Value
+
+
+def estimate(obj, suffix, error_mm, coloured=False):
+    """(triangles, bytes) of a file, about: from the mesh in the document, whose triangles on curved faces grow as the
+    root of the error falls."""
+    if suffix in STOCK_SUFFIXES:
+        return 0, os.path.getsize(obj.Stock) if obj.Stock else 0
+    most = 3 * obj.Mesh.Area / obj.VoxelSize.Value ** 2  # every crossing of the lattice has a quadrilateral
+    count = obj.Mesh.CountFacets * math.sqrt(default_error(obj) / error_mm) if error_mm > 0 else most
+    count = max(4, min(count, most))
+    return int(count), int(count * BYTES[suffix][bool(coloured)])
+
+
+class Export:
+    """One export: prepared here, run() in any thread, finish() here again."""
+
+    def __init__(self, obj, path, data, options):
+        self.path, self.data, self.options = path, data, options
+        self.suffix = suffix_of(path)
+        self.stock_file, self.up_to_date = obj.Stock, obj.UpToDate
+        self._folder = None
+
+    def run(self, progress=None):
+        """Number of triangles written (0: none). JobError, OSError, swarf.Error, swarf.Cancelled."""
+        if self.suffix in STOCK_SUFFIXES:
+            shutil.copyfile(self.stock_file, self.path)
+            return 0
+        if self.data.moves is None:
+            jobs.finish(self.data)
+        target = self.path
+        if self.suffix in SHAPE_SUFFIXES:
+            self._folder = tempfile.TemporaryDirectory(prefix="swarf-")
+            target = os.path.join(self._folder.name, "stock.stl")
+        return native.export(self.data, self.stock_file, target, progress=progress, **self.options)
+
+    def finish(self):
+        """What only FreeCAD can do: shapes."""
+        if self._folder is None:
+            return
+        try:
+            shape = shape_of(Mesh.Mesh(os.path.join(self._folder.name, "stock.stl")))
+            if self.suffix in (".brep", ".brp"):
+                shape.exportBrep(self.path)
+            else:
+                shape.exportStep(self.path)
+        finally:
+            self._folder.cleanup()
+            self._folder = None
+
+
+def export_steps(obj, path, **options):
+    """Steps -> Export of a simulation object. options: those of native.export(). JobError without a result, and where
+    the result is not of the job as it is now."""
+    suffix_of(path)
+    if not obj.Stock or not os.path.exists(obj.Stock):
+        raise JobError("'%s' has no result yet: simulate it first" % obj.Label)
+    if setups.job_signature(obj.Job, obj.VoxelSize.Value) != obj.Signature:
+        raise JobError("'%s' is out of date: update it first" % obj.Label)
+    return Export(obj, path, (yield from setups.gather(obj.Job)), options)
+
+
+def export(obj, path, progress=None, **options):
+    """Write what is left of the stock into a file by its suffix -> number of triangles. options: error_mm, budget,
+    colour ("operation", "deviation" or "thickness"), largest (the largest piece alone)."""
+    made = steps.run(export_steps(obj, path, **options))
+    count = made.run(progress)
+    made.finish()
+    return count
+
+
+def shape_of(mesh):
+    """Solid of a closed mesh, flat pieces as one face. JobError for more triangles than that is good for."""
+    if mesh.CountFacets > SHAPE_TRIANGLES_MAX:
+        raise JobError("%d triangles are too many for a shape, %d are possible: allow a greater error, or write a mesh"
+                       % (mesh.CountFacets, SHAPE_TRIANGLES_MAX))
+    if not mesh.CountFacets:
+        raise JobError("nothing is left of the stock")
+    shape = Part.Shape()
+    shape.makeShapeFromMesh(mesh.Topology, 1e-4)
+    shells = shape.Shells
+    if not shells or not all(shell.isClosed() for shell in shells):
+        raise JobError("the mesh does not close to a solid")
+    solids = [Part.makeSolid(shell).removeSplitter() for shell in shells]
+    return solids[0] if len(solids) == 1 else Part.makeCompound(solids)
+
+
+def section(obj, point, normal):
+    """Compound of the wires along which a plane cuts the mesh of a simulation; FreeCAD's exporters write it as DXF and
+    SVG. JobError where it cuts nothing."""
+    vertices, facets = obj.Mesh.Topology
+    mesh = native.load().Mesh([tuple(vertex) for vertex in vertices], facets)
+    lines = mesh.section(tuple(point), tuple(normal))
+    wires = []
+    for line in lines:
+        corners = [FreeCAD.Vector(*corner) for corner in line]
+        kept = [corner for index, corner in enumerate(corners) if (corner - corners[index - 1]).Length > 1e-6]
+        if len(kept) > 2:
+            wires.append(Part.makePolygon(kept + kept[:1]))
+    if not wires:
+        raise JobError("the plane does not cut '%s'" % obj.Label)
+    return Part.makeCompound(wires)
+
+
+def add_section(obj, point, normal):
+    """A Part object with section() in the document, in one undoable step -> it."""
+    shape, document = section(obj, point, normal), obj.Document
+    document.openTransaction("Section")
+    made = document.addObject("Part::Feature", "Section")
+    made.Label = "%s: %s" % (FreeCAD.Qt.translate("Swarf", "Section"), obj.Label)
+    made.Shape = shape
+    document.commitTransaction()
+    return made

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Task panel that writes what is left of a stock into a file: format, error, colours, pieces, with a size estimate."""
+
+import os
+
+import FreeCAD
+import FreeCADGui as Gui
+
+from .. import native
+from ..app import model
+from ..core.errors import JobError
+from .qt import QtWidgets, choice, flags
+from .slices import Slices
+from .worker import Worker
+
+translate = FreeCAD.Qt.translate
+
+ERROR_DECIMALS = 4
+
+
+class ExportPanel:
+    """Task panel for one simulation object."""
+
+    def __init__(self, obj):
+        self.obj = obj
+        self.reading = self.worker = self.made = None
+        self.closed = False
+        self.form = QtWidgets.QWidget()
+        self.form.setObjectName("SwarfExportPanel")
+        self.form.setWindowTitle(translate("Swarf", "Export stock"))
+        layout = QtWidgets.QFormLayout(self.form)
+        self.kind = choice()
+        for suffix, text in ((".stl", "STL"), (".ply", "PLY"), (".obj", "OBJ"), (".3mf", "3MF"), (".glb", "glTF"),
+                             (".vdb", "OpenVDB"), (".step", "STEP"), (".brep", "BREP")):
+            self.kind.addItem("%s (*%s)" % (text, suffix), suffix)
+        layout.addRow(translate("Swarf", "Format"), self.kind)
+        self.error = QtWidgets.QDoubleSpinBox()
+        self.error.setDecimals(ERROR_DECIMALS)
+        self.error.setRange(0, 10)
+        self.error.setSingleStep(0.005)
+        self.error.setSuffix(" mm")
+        self.error.setValue(model.default_error(obj))
+        layout.addRow(translate("Swarf", "Error"), self.error)
+        self.colour = choice()
+        for kind, text in ((None, translate("Swarf", "none")), ("operation", translate("Swarf", "by operation")),
+                           ("deviation", translate("Swarf", "by deviation from the model")),
+                           ("thickness", translate("Swarf", "by wall thickness"))):
+            if kind != "deviation" or obj.HasDesign:
+                self.colour.addItem(text, kind)
+        layout.addRow(translate("Swarf", "Colours"), self.colour)
+        self.largest = QtWidgets.QCheckBox(translate("Swarf", "leave loose pieces out"))
+        layout.addRow(self.largest)
+        self.estimate = QtWidgets.QLabel()
+        self.estimate.setWordWrap(True)
+        layout.addRow(self.estimate)
+        self.bar = QtWidgets.QProgressBar()
+        self.bar.hide()
+        layout.addRow(self.bar)
+        self.message = QtWidgets.QLabel()
+        self.message.setWordWrap(True)
+        layout.addRow(self.message)
+        for signal in (self.kind.currentIndexChanged, self.colour.currentIndexChanged, self.error.valueChanged):
+            signal.connect(self.show_estimate)
+        self.show_estimate()
+
+    @property
+    def suffix(self):
+        """Of the chosen format."""
+        return self.kind.currentData()
+
+    def show_estimate(self, *_):
+        """How large the file becomes, and what the format has a place for."""
+        mesh = self.suffix not in model.STOCK_SUFFIXES
+        self.error.setEnabled(mesh)
+        self.largest.setEnabled(mesh)
+        self.colour.setEnabled(self.suffix in model.MESH_SUFFIXES and self.suffix != ".stl")
+        triangles, size = model.estimate(self.obj, self.suffix, self.error.value(), self.chosen_colour is not None)
+        if mesh:
+            text = translate("Swarf", "about {0:,} triangles, {1:.2f} MB").format(triangles, size / 1e6)
+        else:
+            text = translate("Swarf", "{0:.2f} MB").format(size / 1e6)
+        if self.suffix in model.SHAPE_SUFFIXES and triangles > model.SHAPE_TRIANGLES_MAX:
+            text += translate("Swarf", "; too many for a shape, allow a greater error")
+        self.estimate.setText(text)
+
+    @property
+    def chosen_colour(self):
+        """What the file is coloured by, None for nothing."""
+        return self.colour.currentData() if self.colour.isEnabled() else None
+
+    def getStandardButtons(self):
+        """OK and Cancel."""
+        return flags(QtWidgets.QDialogButtonBox.Ok, QtWidgets.QDialogButtonBox.Cancel)
+
+    def accept(self):
+        """Ask for the file, then start; the panel stays until the end."""
+        if not self.working:
+            name = "".join(letter if letter.isalnum() or letter in " -_" else "_" for letter in self.obj.Label)
+            path, _ = QtWidgets.QFileDialog.getSaveFileName(
+                self.form, translate("Swarf", "Export stock"), name + self.suffix, "*" + self.suffix)
+            if path:
+                self.start(path if os.path.splitext(path)[1] else path + self.suffix)
+        return False
+
+    @property
+    def working(self):
+        """Whether it reads or writes."""
+        return self.reading is not None or self.worker is not None
+
+    def reject(self):
+        """Cancel the work, or close the panel when there is none."""
+        if self.reading is not None:
+            self.reading.cancel()
+            self.reading = None
+            self.end(translate("Swarf", "Cancelled; nothing was changed."))
+            return False
+        if self.worker is not None:
+            self.worker.cancel()
+            self.message.setText(translate("Swarf", "Cancelling ..."))
+            return False
+        self.close()
+        return True
+
+    def start(self, path):
+        """Read the job here, between the events, then mesh and write in a thread."""
+        self.message.setText("")
+        self.bar.setRange(0, 1000)
+        self.bar.show()
+        self.reading = Slices(
+            model.export_steps(self.obj, path, error_mm=self.error.value(), colour=self.chosen_colour,
+                               largest=self.largest.isChecked()), self.on_read, self.form)
+
+    def on_read(self, made, error):
+        """The job is read, or cannot be."""
+        self.reading = None
+        if error is not None:
+            self.fail(error)
+            return
+        self.made = made
+        self.worker = Worker(made.run, lambda fraction: self.bar.setValue(int(1000 * fraction)), self.on_end)
+        self.worker.start()
+
+    def on_end(self, count, error):
+        """The thread is through, with a number of triangles or an error."""
+        cancelled = self.worker.cancelled
+        self.worker = None
+        if error is not None and cancelled:
+            self.end(translate("Swarf", "Cancelled; nothing was changed."))
+            return
+        try:
+            if error is not None:
+                raise error
+            self.made.finish()
+        except (JobError, OSError, RuntimeError, ValueError, MemoryError, native.load().Error) as problem:
+            self.fail(problem)
+            return
+        FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: written: {0}, {1:.2f} MB\n").format(
+            self.made.path, os.path.getsize(self.made.path) / 1e6))
+        self.close()
+
+    def end(self, text):
+        """Ready to begin again."""
+        self.bar.hide()
+        self.message.setText(text)
+
+    def fail(self, error):
+        """In the panel, where the user looks, and in the report view, where it stays."""
+        text = str(error) or type(error).__name__
+        self.end(text)
+        FreeCAD.Console.PrintError("Swarf: %s\n" % text)
+
+    def close(self):
+        """Close the panel once."""
+        if not self.closed:
+            self.closed = True
+            Gui.Control.closeDialog()
+
+
+def show_panel(obj):
+    """Open the panel, None when another task is open."""
+    if Gui.Control.activeDialog():
+        FreeCAD.Console.PrintError(translate("Swarf", "Swarf: close the open task first\n"))
+        return None
+    panel = ExportPanel(obj)
+    Gui.Control.showDialog(panel)
+    return panel
