@@ -112,11 +112,34 @@ static inline unsigned box_squares(const swarf_group *group, const float at[3], 
     return near;
 }
 
+/* Squares that differ by less than this share are the same but for rounding. */
+static const double rounding = 1e-12;
+
+/* Whether a box is no closer than what is nearest so far; corners are floats, so that boxes are exact. Of triangles in
+ * one plane along the axes, whose boxes overlap as those of slivers do, only the first is measured for it. */
+static int is_no_closer(const swarf_group *group, int i, const double point[3], const swarf_nearest *nearest)
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        const double below = group->lo[k][i] - point[k], above = point[k] - group->hi[k][i];
+        const double away = below > above ? below : above;
+        sum += away > 0 ? away * away : 0;
+    }
+    return sum >= nearest->square * (1 - rounding);
+}
+
 /* Greatest square in float that a box within `square` can show. */
 static float square_limit(double square, double slack)
 {
     const double reach = sqrt(square) + slack;
     return (float)(reach * reach * (1 + 1e-6));
+}
+
+/* A box that shows this or more may be no closer than `square` after all. */
+static float square_doubtful(double square, double slack)
+{
+    const double reach = sqrt(square) - slack;
+    return reach > 0 ? (float)(reach * reach * (1 - 1e-6)) : 0;
 }
 
 void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *corners, const double point[3],
@@ -129,27 +152,33 @@ void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *cor
         const double own = fabs(point[k]) * TREE_SLACK;
         slack = own > slack ? own : slack;
     }
-    float limit = square_limit(nearest->square, slack);
+    float limit = square_limit(nearest->square, slack), doubtful = square_doubtful(nearest->square, slack);
     struct visit stack[MOST_VISITS];
     int depth = 1;
     stack[0] = (struct visit){0, tree->levels - 1, 0};
     while (depth > 0) {
         const struct visit now = stack[--depth];
         if (now.square > limit) continue;
+        if (now.square >= doubtful && now.level + 1 < tree->levels) {
+            const swarf_group *above = &tree->groups[tree->first[now.level + 1] + now.group / TREE_WIDTH];
+            if (is_no_closer(above, (int)(now.group % TREE_WIDTH), point, nearest)) continue;
+        }
         float square[TREE_WIDTH];
-        unsigned near = box_squares(&tree->groups[tree->first[now.level] + now.group], at, limit, square);
+        const swarf_group *group = &tree->groups[tree->first[now.level] + now.group];
+        unsigned near = box_squares(group, at, limit, square);
         const size_t below = now.level ? tree->first[now.level] - tree->first[now.level - 1] : tree->count;
         const size_t boxes = below - now.group * TREE_WIDTH;
         if (boxes < TREE_WIDTH) near &= (1u << boxes) - 1; /* those that are missing are infinitely far away */
         if (now.level == 0) {
             for (; near; near &= near - 1) {
                 const int i = __builtin_ctz(near);
-                if (square[i] > limit) continue;
+                if (square[i] > limit || (square[i] >= doubtful && is_no_closer(group, i, point, nearest))) continue;
                 swarf_nearest here = {.place = now.group * TREE_WIDTH + (size_t)i};
                 here.square = swarf_corners_closest(&corners[here.place], point, here.point, &here.feature);
                 if (!(here.square < nearest->square) || (bounds && !bounds(context, here.place, here.point))) continue;
                 *nearest = here;
                 limit = square_limit(here.square, slack);
+                doubtful = square_doubtful(here.square, slack);
             }
             continue;
         }

@@ -71,6 +71,22 @@ swarf_status swarf_stock_volume(swarf_stock *stock, double *out)
     return status;
 }
 
+/* Least value of each of the eight planes across each axis. */
+static void find_least(const float values[SWARF_LEAF_SIZE], float least[3][SWARF_LEAF_DIM])
+{
+    for (int i = 0; i < 3 * SWARF_LEAF_DIM; i++) least[i / SWARF_LEAF_DIM][i % SWARF_LEAF_DIM] = INFINITY;
+    for (int row = 0; row < SWARF_LEAF_DIM * SWARF_LEAF_DIM; row++) {
+        const float *from = values + row * SWARF_LEAF_DIM;
+        float low = from[0];
+        for (int z = 0; z < SWARF_LEAF_DIM; z++) {
+            least[2][z] = from[z] < least[2][z] ? from[z] : least[2][z];
+            low = from[z] < low ? from[z] : low;
+        }
+        least[0][row >> 3] = low < least[0][row >> 3] ? low : least[0][row >> 3];
+        least[1][row & 7] = low < least[1][row & 7] ? low : least[1][row & 7];
+    }
+}
+
 /* A ball of radius -v around a voxel of value v < 0 is all material, so the material reaches at least that far; for
  * faces along the axes that is exact. */
 static swarf_status node_box(void *context, size_t node)
@@ -93,14 +109,14 @@ static swarf_status node_box(void *context, size_t node)
             }
             continue;
         }
-        for (int i = 0; i < SWARF_LEAF_SIZE; i++) {
-            if (!(values[i] < 0)) continue;
-            const double depth = -(double)(values[i] * scale);
-            const int at[3] = {i >> 6, i >> 3 & 7, i & 7};
-            for (int k = 0; k < 3; k++) {
-                box.lo[k] = fmin(box.lo[k], corner[k] + at[k] - depth);
-                box.hi[k] = fmax(box.hi[k], corner[k] + at[k] + depth);
-            }
+        float least[3][SWARF_LEAF_DIM];
+        find_least(values, least);
+        for (int i = 0; i < 3 * SWARF_LEAF_DIM; i++) {
+            const int k = i / SWARF_LEAF_DIM, at = i % SWARF_LEAF_DIM;
+            const double depth = -(double)(least[k][at] * scale);
+            if (!(depth > 0)) continue;
+            box.lo[k] = fmin(box.lo[k], corner[k] + at - depth);
+            box.hi[k] = fmax(box.hi[k], corner[k] + at + depth);
         }
     }
     walk->boxes[node] = box;
