@@ -18,37 +18,46 @@ typedef struct cast {
 /* Packets that one piece of work traces: some 0.1 ms. */
 enum { PACKETS = 32 };
 
-static void cast_packet(const cast *c, size_t first)
+static void take(const cast *c, size_t first, swarf_rays *rays, double length[SWARF_PACKET])
 {
-    swarf_rays rays;
-    double length[SWARF_PACKET] = {0};
-    rays.active = 0;
+    rays->active = 0;
     for (int lane = 0; lane < SWARF_PACKET && first + (size_t)lane < c->count; lane++) {
         const double *o = c->origin + 3 * (first + (size_t)lane), *d = c->direction + 3 * (first + (size_t)lane);
         length[lane] = hypot(hypot(d[0], d[1]), d[2]);
-        rays.reach[lane] = INFINITY;
-        rays.active |= 1u << lane;
+        rays->reach[lane] = INFINITY;
+        rays->active |= 1u << lane;
         for (int axis = 0; axis < 3; axis++) {
-            rays.origin[axis][lane] = o[axis];
-            rays.direction[axis][lane] = d[axis] / length[lane];
+            rays->origin[axis][lane] = o[axis];
+            rays->direction[axis][lane] = d[axis] / length[lane];
         }
     }
-    swarf_scene_trace(c->scene, &rays, NULL);
-    for (int lane = 0; rays.active >> lane & 1 && lane < SWARF_PACKET; lane++) {
+}
+
+static void give(const cast *c, size_t first, const swarf_rays *rays, const double length[SWARF_PACKET])
+{
+    for (int lane = 0; rays->active >> lane & 1 && lane < SWARF_PACKET; lane++) {
         const size_t ray = first + (size_t)lane;
-        const int hit = (int)(rays.hit >> lane & 1);
-        c->distance[ray] = hit ? rays.distance[lane] / length[lane] : INFINITY;
+        const int hit = (int)(rays->hit >> lane & 1);
+        c->distance[ray] = hit ? rays->distance[lane] / length[lane] : INFINITY;
         for (int axis = 0; c->normal && axis < 3; axis++)
-            c->normal[3 * ray + (size_t)axis] = hit ? rays.normal[axis][lane] : 0;
+            c->normal[3 * ray + (size_t)axis] = hit ? rays->normal[axis][lane] : 0;
     }
 }
 
 static swarf_status cast_some(void *context, size_t index)
 {
     const cast *c = context;
-    const size_t last = (index + 1) * PACKETS * SWARF_PACKET;
-    for (size_t ray = index * PACKETS * SWARF_PACKET; ray < last && ray < c->count; ray += SWARF_PACKET)
-        cast_packet(c, ray);
+    const size_t begin = index * PACKETS * SWARF_PACKET, end = begin + PACKETS * SWARF_PACKET;
+    for (size_t first = begin; first < end && first < c->count; first += SWARF_GROUP * SWARF_PACKET) {
+        swarf_rays rays[SWARF_GROUP];
+        double length[SWARF_GROUP][SWARF_PACKET];
+        unsigned inside[SWARF_GROUP];
+        int count = 0;
+        for (; count < SWARF_GROUP && first + (size_t)count * SWARF_PACKET < c->count; count++)
+            take(c, first + (size_t)count * SWARF_PACKET, &rays[count], length[count]);
+        swarf_scene_trace(c->scene, rays, inside, count);
+        for (int i = 0; i < count; i++) give(c, first + (size_t)i * SWARF_PACKET, &rays[i], length[i]);
+    }
     return SWARF_OK;
 }
 

@@ -94,11 +94,23 @@ static int is_deep(const around *a, const swarf_cube_tiles *tiles, int x, int y,
     return 1;
 }
 
-/** Bits of the 2x2x2 sub-blocks with cells that stop, and the bounds of those cells in the slot. */
-static int32_t summarise(const uint64_t stop[8], int lo[3], int hi[3])
+/** The cells of a slot by blocks. */
+static void sort_stops(const uint64_t stop[8], uint64_t by_block[8])
+{
+    memset(by_block, 0, 8 * sizeof *by_block);
+    for (int x = 0; x < 8; x++)
+        for (int quarter = 0; quarter < 4; quarter++) { /* y half, z half */
+            uint64_t bits = stop[x] >> (32 * (quarter >> 1) + 4 * (quarter & 1)) & 0x0f0f0f0f;
+            bits = (bits | bits >> 4) & 0x00ff00ff;
+            bits = (bits | bits >> 8) & 0xffff;
+            by_block[(x >> 2) * 4 + quarter] |= bits << (16 * (x & 3));
+        }
+}
+
+/** The bounds of the cells that stop in the slot. */
+static void measure(const uint64_t stop[8], int lo[3], int hi[3])
 {
     uint64_t any = 0;
-    int32_t sub = 0;
     lo[0] = 8;
     hi[0] = 0;
     for (int x = 0; x < 8; x++) {
@@ -106,9 +118,6 @@ static int32_t summarise(const uint64_t stop[8], int lo[3], int hi[3])
         if (lo[0] > x) lo[0] = x;
         hi[0] = x + 1;
         any |= stop[x];
-        for (int quarter = 0; quarter < 4; quarter++) /* y half, z half */
-            if (stop[x] & (uint64_t)0x0f0f0f0f << (32 * (quarter >> 1) + 4 * (quarter & 1)))
-                sub |= 1 << ((x >> 2) * 4 + quarter);
     }
     uint64_t columns = any | any >> 32;
     columns |= columns >> 16;
@@ -117,7 +126,6 @@ static int32_t summarise(const uint64_t stop[8], int lo[3], int hi[3])
     hi[1] = (63 - __builtin_clzll(any)) / 8 + 1;
     lo[2] = __builtin_ctzll(columns);
     hi[2] = 64 - __builtin_clzll(columns);
-    return sub;
 }
 
 /** Room for one more slot. */
@@ -125,8 +133,10 @@ static swarf_status grow(swarf_cube *cube)
 {
     if (cube->slot_count < cube->slot_room) return SWARF_OK;
     const uint32_t room = cube->slot_room ? 2 * cube->slot_room : 8;
-    swarf_cube_slot *slots = realloc(cube->slots, room * sizeof *slots);
+    swarf_cube_slot *slots = aligned_alloc(64, room * sizeof *slots); /* the words of a slot are a line of a cache */
     if (!slots) return swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory");
+    if (cube->slot_count) memcpy(slots, cube->slots, cube->slot_count * sizeof *slots);
+    free(cube->slots);
     cube->slots = slots;
     cube->slot_room = room;
     return SWARF_OK;
@@ -136,23 +146,26 @@ static void clear(swarf_cube *cube)
 {
     cube->slot_count = 0;
     for (int axis = 0; axis < 3; axis++) {
-        cube->lo[axis] = SWARF_CUBE_DIM;
+        cube->lo[axis] = SWARF_CUBE_CELLS;
         cube->hi[axis] = 0;
     }
-    memset(cube->entry, 0, sizeof cube->entry);
+    memset(cube->block, 0, sizeof cube->block);
 }
 
 static swarf_status add_slot(swarf_cube *cube, const around *a, int x, int y, int z, const uint64_t stop[8])
 {
     SWARF_TRY(grow(cube));
     swarf_cube_slot *slot = &cube->slots[cube->slot_count];
-    memcpy(slot->stop, stop, sizeof slot->stop);
-    cube->own[cube->slot_count] = a->values[x][y][z];
+    sort_stops(stop, slot->stop);
     for (int number = 0; number < 8; number++)
         slot->values[number] = a->values[x + (number >> 2)][y + (number >> 1 & 1)][z + (number & 1)];
     const int at[3] = {8 * x, 8 * y, 8 * z};
     int lo[3], hi[3];
-    cube->entry[(x * 4 + y) * 4 + z] = (int32_t)cube->slot_count++ << 8 | summarise(stop, lo, hi);
+    measure(stop, lo, hi);
+    cube->place[(x * 4 + y) * 4 + z] = (uint8_t)cube->slot_count++;
+    for (int block = 0; block < 8; block++)
+        if (slot->stop[block])
+            cube->block[2 * x + (block >> 2)] |= (uint64_t)1 << ((2 * y + (block >> 1 & 1)) * 8 + 2 * z + (block & 1));
     for (int axis = 0; axis < 3; axis++) {
         if (cube->lo[axis] > at[axis] + lo[axis]) cube->lo[axis] = (uint8_t)(at[axis] + lo[axis]);
         if (cube->hi[axis] < at[axis] + hi[axis]) cube->hi[axis] = (uint8_t)(at[axis] + hi[axis]);

@@ -7,9 +7,9 @@
  * cell that stops a ray: one with a corner in material. Of those the cells with other corners outside have the surface
  * in them; the solid ones behind are the net that holds a ray which rounding led past the surface at a seam.
  *
- *   entry[64]   of slot (x * 4 + y) * 4 + z: 0 when nothing in it stops a ray, else its place in `slots` * 256 + a bit
- *               for each of the 2x2x2 sub-blocks of 4^3 cells, (x * 2 + y) * 2 + z, that has such a cell
- *   slots       128 bytes for each slot that has an entry
+ *   block    a bit for each of the 8^3 blocks of 4^3 cells with such a cell
+ *   place    where the slots that have such blocks are in `slots`
+ *   slots    128 bytes for each of those
  *
  * Coordinates are voxels of the stock's layout, or, where it says so, of the cube.
  */
@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-enum { SWARF_CUBE_DIM = SWARF_CUBE_SLOTS * SWARF_LEAF_DIM };
+_Static_assert((int)SWARF_CUBE_CELLS == (int)SWARF_CUBE_SLOTS * (int)SWARF_LEAF_DIM, "the kernels know cubes by cells");
 
 /** What cubes see of tiles: 512 equal values each. */
 typedef struct swarf_cube_tiles {

@@ -50,19 +50,4 @@ inline void swarf_embree_intersect16(const int *valid, RTCScene scene, RTCRayHit
 #endif
 }
 
-/* The same for one ray. */
-inline void swarf_embree_intersect1(RTCScene scene, RTCRayHit *ray, swarf_embree_context *context)
-{
-#if SWARF_EMBREE_MAJOR >= 4
-    rtcInitRayQueryContext(context);
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.context = context;
-    rtcIntersect1(scene, ray, &arguments);
-#else
-    rtcInitIntersectContext(context);
-    rtcIntersect1(scene, context, ray);
-#endif
-}
-
 #endif

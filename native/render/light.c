@@ -11,6 +11,7 @@
 #include "render/vector.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { BLOCK = 2, PATTERN = 4 };
 
@@ -24,6 +25,7 @@ typedef struct sky_work {
     swarf_canvas *canvas;
     int32_t across, down; /* blocks */
     float *open;          /* per block, negative: no surface */
+    double pattern[PATTERN * PATTERN][SWARF_PACKET][3];
 } sky_work;
 
 static int is_solid(const swarf_sight *sight)
@@ -38,27 +40,43 @@ static void start_above(const swarf_canvas *c, const swarf_sight *sight, swarf_r
         rays->origin[axis][ray] = c->look.middle[axis] + sight->point[axis] + gap * sight->normal[axis];
 }
 
-static float look_up(const swarf_canvas *c, const swarf_sight *sight, int pattern)
+/** The patterns: directions over a surface with the normal (0, 0, 1). */
+static void make_patterns(double pattern[PATTERN * PATTERN][SWARF_PACKET][3])
 {
-    swarf_rays rays;
-    const double n[3] = {sight->normal[0], sight->normal[1], sight->normal[2]}, reach = sky_reach * c->look.size;
+    for (int turn = 0; turn < PATTERN * PATTERN; turn++)
+        for (int ray = 0; ray < SWARF_PACKET; ray++) {
+            const double square = (ray + 0.5) / SWARF_PACKET, radius = sqrt(square);
+            const double angle = ray * golden_angle + turn * (6.28318530717958648 / (PATTERN * PATTERN));
+            pattern[turn][ray][0] = radius * cos(angle);
+            pattern[turn][ray][1] = radius * sin(angle);
+            pattern[turn][ray][2] = sqrt(1 - square);
+        }
+}
+
+/** Rays over the half space above what was seen. */
+static void look_up(const sky_work *w, const swarf_sight *sight, int turn, swarf_rays *rays)
+{
+    const double n[3] = {sight->normal[0], sight->normal[1], sight->normal[2]};
+    const double reach = sky_reach * w->canvas->look.size;
     double u[3] = {fabs(n[0]) < 0.6 ? 1 : 0, fabs(n[0]) < 0.6 ? 0 : 1, 0}, v[3];
     vector_cross(n, u, v);
     (void)vector_normalise(v);
     vector_cross(v, n, u);
     for (int ray = 0; ray < SWARF_PACKET; ray++) {
-        const double square = (ray + 0.5) / SWARF_PACKET, radius = sqrt(square), up = sqrt(1 - square);
-        const double angle = ray * golden_angle + pattern * (6.28318530717958648 / (PATTERN * PATTERN));
-        const double x = radius * cos(angle), y = radius * sin(angle);
-        for (int axis = 0; axis < 3; axis++) rays.direction[axis][ray] = x * u[axis] + y * v[axis] + up * n[axis];
-        start_above(c, sight, &rays, ray);
-        rays.reach[ray] = reach;
+        const double *p = w->pattern[turn][ray];
+        for (int axis = 0; axis < 3; axis++)
+            rays->direction[axis][ray] = p[0] * u[axis] + p[1] * v[axis] + p[2] * n[axis];
+        start_above(w->canvas, sight, rays, ray);
+        rays->reach[ray] = reach;
     }
-    rays.active = (1u << SWARF_PACKET) - 1;
-    const unsigned blocked = swarf_look_blocked(&c->look, &rays);
+    rays->active = (1u << SWARF_PACKET) - 1;
+}
+
+static float openness(const sky_work *w, const swarf_rays *rays, unsigned blocked)
+{
     double open = SWARF_PACKET;
     for (unsigned left = blocked; left; left &= left - 1) {
-        const double part = rays.distance[__builtin_ctz(left)] / reach;
+        const double part = rays->distance[__builtin_ctz(left)] / (sky_reach * w->canvas->look.size);
         open -= part < 1 ? 1 - part * part : 0;
     }
     return (float)(open / SWARF_PACKET);
@@ -68,10 +86,21 @@ static swarf_status look_up_row(void *context, size_t row)
 {
     const sky_work *w = context;
     const swarf_canvas *c = w->canvas;
-    for (int32_t bx = 0; bx < w->across; bx++) {
-        const swarf_sight *sight = &c->middle[swarf_canvas_at(c, bx * BLOCK, (int32_t)row * BLOCK)];
-        const int pattern = (int)(row % PATTERN) * PATTERN + bx % PATTERN;
-        w->open[row * (size_t)w->across + (size_t)bx] = is_solid(sight) ? look_up(c, sight, pattern) : -1;
+    float *open = w->open + row * (size_t)w->across;
+    for (int32_t bx = 0; bx < w->across;) {
+        swarf_rays rays[SWARF_GROUP];
+        int32_t block[SWARF_GROUP];
+        unsigned blocked[SWARF_GROUP];
+        int count = 0;
+        for (; bx < w->across && count < SWARF_GROUP; bx++) {
+            const swarf_sight *sight = &c->middle[swarf_canvas_at(c, bx * BLOCK, (int32_t)row * BLOCK)];
+            open[bx] = -1;
+            if (!is_solid(sight)) continue;
+            look_up(w, sight, (int)(row % PATTERN) * PATTERN + bx % PATTERN, &rays[count]);
+            block[count++] = bx;
+        }
+        swarf_look_blocked(&c->look, rays, blocked, count);
+        for (int i = 0; i < count; i++) open[block[i]] = openness(w, &rays[i], blocked[i]);
     }
     return SWARF_OK;
 }
@@ -109,28 +138,37 @@ static swarf_status spread_row(void *context, size_t row)
     return SWARF_OK;
 }
 
+/** Rays from up to SWARF_PACKET squares of a row towards the light. */
+static void look_at_light(const swarf_canvas *c, const swarf_sight *sight, int32_t count, swarf_rays *rays)
+{
+    rays->active = 0;
+    for (int ray = 0; ray < SWARF_PACKET; ray++) {
+        rays->reach[ray] = c->look.size;
+        for (int axis = 0; axis < 3; axis++) {
+            rays->direction[axis][ray] = c->shading.light[axis];
+            rays->origin[axis][ray] = 0;
+        }
+        if (ray >= count || !is_solid(&sight[ray])) continue;
+        start_above(c, &sight[ray], rays, ray);
+        rays->active |= 1u << ray;
+    }
+}
+
 static swarf_status shadow_row(void *context, size_t row)
 {
     const swarf_canvas *c = context;
-    for (int32_t x0 = 0; x0 < c->width; x0 += SWARF_PACKET) {
-        swarf_rays rays;
-        const swarf_sight *sight = &c->middle[swarf_canvas_at(c, x0, (int32_t)row)];
-        uint8_t *sun = &c->sun[swarf_canvas_at(c, x0, (int32_t)row)];
-        rays.active = 0;
-        for (int ray = 0; ray < SWARF_PACKET; ray++) {
-            const int there = x0 + ray < c->width && is_solid(&sight[ray]);
-            rays.reach[ray] = c->look.size;
-            for (int axis = 0; axis < 3; axis++) {
-                rays.direction[axis][ray] = c->shading.light[axis];
-                rays.origin[axis][ray] = 0;
-            }
-            if (x0 + ray < c->width) sun[ray] = 255;
-            if (!there) continue;
-            start_above(c, &sight[ray], &rays, ray);
-            rays.active |= 1u << ray;
-        }
-        if (!rays.active) continue;
-        for (unsigned left = swarf_look_blocked(&c->look, &rays); left; left &= left - 1) sun[__builtin_ctz(left)] = 0;
+    const swarf_sight *sight = &c->middle[swarf_canvas_at(c, 0, (int32_t)row)];
+    uint8_t *sun = &c->sun[swarf_canvas_at(c, 0, (int32_t)row)];
+    memset(sun, 255, (size_t)c->width);
+    for (int32_t x = 0; x < c->width; x += SWARF_GROUP * SWARF_PACKET) {
+        swarf_rays rays[SWARF_GROUP];
+        unsigned blocked[SWARF_GROUP];
+        for (int32_t i = 0; i < SWARF_GROUP; i++)
+            look_at_light(c, &sight[x] + i * SWARF_PACKET, c->width - x - i * SWARF_PACKET, &rays[i]);
+        swarf_look_blocked(&c->look, rays, blocked, SWARF_GROUP);
+        for (int32_t i = 0; i < SWARF_GROUP; i++)
+            for (unsigned left = blocked[i]; left; left &= left - 1)
+                sun[x + i * SWARF_PACKET + __builtin_ctz(left)] = 0;
     }
     return SWARF_OK;
 }
@@ -140,7 +178,8 @@ swarf_status swarf_canvas_light(swarf_canvas *c, const swarf_progress *progress,
     const size_t squares = (size_t)c->width * (size_t)c->height;
     const double middle = c->options->occlusion ? from + 0.7 * (to - from) : from;
     if (c->options->occlusion) {
-        sky_work work = {c, (c->width + BLOCK - 1) / BLOCK, (c->height + BLOCK - 1) / BLOCK, NULL};
+        sky_work work = {c, (c->width + BLOCK - 1) / BLOCK, (c->height + BLOCK - 1) / BLOCK, NULL, {{{0}}}};
+        make_patterns(work.pattern);
         c->sky = malloc(squares * sizeof *c->sky);
         work.open = malloc((size_t)work.across * (size_t)work.down * sizeof *work.open);
         swarf_status status = c->sky && work.open ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");

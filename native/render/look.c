@@ -171,49 +171,64 @@ static void see_cutter(const swarf_look *look, const swarf_rays *rays, const dou
     }
 }
 
-void swarf_look_through(const swarf_look *look, const double x[SWARF_PACKET], const double y[SWARF_PACKET],
-                        unsigned count, swarf_sight out[])
+/* What the rays of a packet have met becomes sights. */
+static void tell(const swarf_look *look, const swarf_rays *rays, const double skipped[SWARF_PACKET],
+                 const int through[SWARF_PACKET], unsigned inside, unsigned fixed, unsigned count, swarf_sight out[])
 {
-    swarf_rays rays;
-    double skipped[SWARF_PACKET] = {0};
-    int through[SWARF_PACKET] = {0};
-    unsigned inside = 0, fixed = 0;
-    swarf_ray_kernel_current()->aim(&look->source, x, y, &rays);
-    rays.active = (1u << count) - 1;
-    if (look->section_count) cut(look, &rays, skipped, through);
-    swarf_scene_trace(look->scene, &rays, &inside);
-    const swarf_fixtures *fixtures = swarf_scene_fixtures(look->scene);
-    if (fixtures && (rays.active & ~inside)) fixed = swarf_fixtures_trace(fixtures, &rays, rays.active & ~inside);
     for (unsigned ray = 0; ray < count; ray++) {
         swarf_sight *sight = &out[ray];
-        const int hit = (int)((rays.hit | fixed) >> ray & 1);
+        const int hit = (int)((rays->hit | fixed) >> ray & 1);
         const int capped = look->section_count && (inside >> ray & 1) && through[ray] >= 0;
-        sight->distance = capped ? skipped[ray] : skipped[ray] + rays.distance[ray];
+        sight->distance = capped ? skipped[ray] : skipped[ray] + rays->distance[ray];
         sight->move = -1;
-        sight->seen = capped                ? SWARF_SEEN_SECTION
-                      : fixed >> ray & 1    ? SWARF_SEEN_FIXTURE
-                      : rays.hit >> ray & 1 ? SWARF_SEEN_STOCK
-                                            : SWARF_SEEN_NOTHING;
+        sight->seen = capped                 ? SWARF_SEEN_SECTION
+                      : fixed >> ray & 1     ? SWARF_SEEN_FIXTURE
+                      : rays->hit >> ray & 1 ? SWARF_SEEN_STOCK
+                                             : SWARF_SEEN_NOTHING;
         for (int axis = 0; axis < 3; axis++) {
-            sight->normal[axis] = hit ? rays.normal[axis][ray] : 0;
+            sight->normal[axis] = hit ? rays->normal[axis][ray] : 0;
             if (capped) sight->normal[axis] = (float)look->section[through[ray]].normal[axis];
         }
     }
-    if (look->cutter) see_cutter(look, &rays, skipped, count, out);
+    if (look->cutter) see_cutter(look, rays, skipped, count, out);
     for (unsigned ray = 0; ray < count; ray++)
         for (int axis = 0; axis < 3; axis++) {
-            const double way = out[ray].distance - skipped[ray], origin = rays.origin[axis][ray];
-            const double at = origin + way * rays.direction[axis][ray] - look->middle[axis];
+            const double way = out[ray].distance - skipped[ray], origin = rays->origin[axis][ray];
+            const double at = origin + way * rays->direction[axis][ray] - look->middle[axis];
             out[ray].point[axis] = out[ray].seen == SWARF_SEEN_NOTHING ? 0 : (float)at;
         }
 }
 
-unsigned swarf_look_blocked(const swarf_look *look, swarf_rays *rays)
+void swarf_look_through(const swarf_look *look, const swarf_places places[], int count, swarf_sight *const out[])
+{
+    swarf_rays rays[SWARF_GROUP];
+    double skipped[SWARF_GROUP][SWARF_PACKET] = {{0}};
+    int through[SWARF_GROUP][SWARF_PACKET] = {{0}};
+    unsigned inside[SWARF_GROUP];
+    const swarf_fixtures *fixtures = swarf_scene_fixtures(look->scene);
+    for (int i = 0; i < count; i++) {
+        swarf_ray_kernel_current()->aim(&look->source, places[i].x, places[i].y, &rays[i]);
+        rays[i].active = (1u << places[i].count) - 1;
+        if (look->section_count) cut(look, &rays[i], skipped[i], through[i]);
+    }
+    swarf_scene_trace(look->scene, rays, inside, count);
+    for (int i = 0; i < count; i++) {
+        const unsigned open = rays[i].active & ~inside[i];
+        const unsigned fixed = fixtures && open ? swarf_fixtures_trace(fixtures, &rays[i], open) : 0;
+        tell(look, &rays[i], skipped[i], through[i], inside[i], fixed, places[i].count, out[i]);
+    }
+}
+
+void swarf_look_blocked(const swarf_look *look, swarf_rays rays[], unsigned blocked[], int count)
 {
     double skipped[SWARF_PACKET];
     int through[SWARF_PACKET] = {0};
-    if (look->section_count) cut(look, rays, skipped, through);
-    swarf_scene_trace(look->scene, rays, NULL);
+    unsigned inside[SWARF_GROUP];
     const swarf_fixtures *fixtures = swarf_scene_fixtures(look->scene);
-    return rays->hit | (fixtures && rays->active ? swarf_fixtures_trace(fixtures, rays, rays->active) : 0);
+    for (int i = 0; look->section_count && i < count; i++) cut(look, &rays[i], skipped, through);
+    swarf_scene_trace(look->scene, rays, inside, count);
+    for (int i = 0; i < count; i++) {
+        blocked[i] = rays[i].hit;
+        if (fixtures && rays[i].active) blocked[i] |= swarf_fixtures_trace(fixtures, &rays[i], rays[i].active);
+    }
 }

@@ -40,12 +40,19 @@ void swarf_look_end(swarf_look *look);
 /** The ray through a place (-1 .. 1) of the picture, its direction of unit length. */
 void swarf_look_ray(const swarf_look *look, const double place[2], double origin[3], double direction[3]);
 
-/** What the rays through `count` <= SWARF_PACKET places (x[i], y[i]) meet. Many threads at once. */
-void swarf_look_through(const swarf_look *look, const double x[SWARF_PACKET], const double y[SWARF_PACKET],
-                        unsigned count, swarf_sight out[]);
+/** Places (x[i], y[i]), -1 .. 1 each, of a picture; the first `count` <= SWARF_PACKET count. */
+typedef struct swarf_places {
+    double x[SWARF_PACKET], y[SWARF_PACKET];
+    unsigned count;
+} swarf_places;
 
-/** Whether any of the rays `active`, which start at surfaces, meets something within its reach; bits. */
-unsigned swarf_look_blocked(const swarf_look *look, swarf_rays *rays);
+/** What the rays through `count` <= SWARF_GROUP packets of places meet: out[i] has room for those of places[i]. Many
+ *  threads at once. */
+void swarf_look_through(const swarf_look *look, const swarf_places places[], int count, swarf_sight *const out[]);
+
+/** Whether the active rays of `count` <= SWARF_GROUP packets, which start at surfaces, meet something within their
+ *  reach: bits of them in blocked[i]. */
+void swarf_look_blocked(const swarf_look *look, swarf_rays rays[], unsigned blocked[], int count);
 
 /** Edge (mm) of a grid square at the depth of a sight. */
 double swarf_look_footprint(const swarf_look *look, const swarf_sight *sight);

@@ -15,26 +15,67 @@
 #include <string.h>
 #include <time.h>
 
-enum { PACKET_EDGE = 4, PIXELS_MAX = 16384, SAMPLES_MAX = 4, COARSE_MAX = 16 };
+enum { PACKET_EDGE = 4, GROUP_EDGE = 2, PIXELS_MAX = 16384, SAMPLES_MAX = 4, COARSE_MAX = 16 };
 
+/** The grid squares of a group of packets. */
+typedef struct group {
+    int32_t x[SWARF_GROUP][SWARF_PACKET], y[SWARF_GROUP][SWARF_PACKET];
+    int count[SWARF_GROUP];
+} group;
+
+_Static_assert(GROUP_EDGE *GROUP_EDGE == SWARF_GROUP, "a group is a square of packets");
 _Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a square are one packet");
 
-/** The square of PACKET_EDGE^2 grid squares from (x0, y0). */
-static void look_packet(const swarf_canvas *c, int32_t x0, int32_t y0)
+/** What is seen in the square of packets from (x0, y0), and in which grid squares. */
+static void look_group(const swarf_canvas *c, int32_t x0, int32_t y0, swarf_sight seen[SWARF_GROUP][SWARF_PACKET],
+                       group *g)
 {
-    double place[2][SWARF_PACKET];
-    size_t at[SWARF_PACKET];
-    swarf_sight seen[SWARF_PACKET];
-    unsigned count = 0;
-    for (int32_t y = y0; y < y0 + PACKET_EDGE && y < c->height; y++)
-        for (int32_t x = x0; x < x0 + PACKET_EDGE && x < c->width; x++, count++) {
-            place[0][count] = swarf_canvas_x(c, x, 0.5);
-            place[1][count] = swarf_canvas_y(c, y, 0.5);
-            at[count] = swarf_canvas_at(c, x, y);
-        }
-    for (unsigned idle = count; idle < SWARF_PACKET; idle++) place[0][idle] = place[1][idle] = 0;
-    swarf_look_through(&c->look, place[0], place[1], count, seen);
-    for (unsigned ray = 0; ray < count; ray++) c->middle[at[ray]] = seen[ray];
+    swarf_places places[SWARF_GROUP];
+    swarf_sight *out[SWARF_GROUP];
+    for (int i = 0; i < SWARF_GROUP; i++) {
+        swarf_places *p = &places[i];
+        const int32_t left = x0 + i % GROUP_EDGE * PACKET_EDGE, top = y0 + i / GROUP_EDGE * PACKET_EDGE;
+        p->count = 0;
+        for (int32_t y = top; y < top + PACKET_EDGE && y < c->height; y++)
+            for (int32_t x = left; x < left + PACKET_EDGE && x < c->width; x++, p->count++) {
+                p->x[p->count] = swarf_canvas_x(c, x, 0.5);
+                p->y[p->count] = swarf_canvas_y(c, y, 0.5);
+                g->x[i][p->count] = x;
+                g->y[i][p->count] = y;
+            }
+        for (unsigned idle = p->count; idle < SWARF_PACKET; idle++) p->x[idle] = p->y[idle] = 0;
+        g->count[i] = (int)p->count;
+        out[i] = seen[i];
+    }
+    swarf_look_through(&c->look, places, SWARF_GROUP, out);
+}
+
+/** Keep what is seen for the passes to come. */
+static void keep_group(const swarf_canvas *c, int32_t x0, int32_t y0)
+{
+    swarf_sight seen[SWARF_GROUP][SWARF_PACKET];
+    group g;
+    look_group(c, x0, y0, seen, &g);
+    for (int i = 0; i < SWARF_GROUP; i++)
+        for (int ray = 0; ray < g.count[i]; ray++)
+            c->middle[swarf_canvas_at(c, g.x[i][ray], g.y[i][ray])] = seen[i][ray];
+}
+
+/** Shade what is seen at once. */
+static void paint_group(const swarf_canvas *c, int32_t x0, int32_t y0)
+{
+    swarf_sight seen[SWARF_GROUP][SWARF_PACKET];
+    group g;
+    look_group(c, x0, y0, seen, &g);
+    for (int i = 0; i < SWARF_GROUP; i++) {
+        swarf_spot spots[SWARF_PACKET];
+        float colour[SWARF_PACKET][4];
+        for (int ray = 0; ray < g.count[i]; ray++)
+            spots[ray] = swarf_canvas_spot(c, g.x[i][ray], g.y[i][ray], 0.5, &seen[i][ray]);
+        swarf_shade(&c->shading, spots, g.count[i], colour);
+        for (int ray = 0; ray < g.count[i]; ray++)
+            memcpy(c->colour[swarf_canvas_at(c, g.x[i][ray], g.y[i][ray])], colour[ray], sizeof colour[ray]);
+    }
 }
 
 static int32_t tiles(int32_t length)
@@ -47,8 +88,10 @@ static swarf_status look_tile(void *context, size_t index)
     const swarf_canvas *c = context;
     const int32_t across = tiles(c->width);
     const int32_t x0 = (int32_t)index % across * SWARF_TILE, y0 = (int32_t)index / across * SWARF_TILE;
-    for (int32_t y = y0; y < y0 + SWARF_TILE && y < c->height; y += PACKET_EDGE)
-        for (int32_t x = x0; x < x0 + SWARF_TILE && x < c->width; x += PACKET_EDGE) look_packet(c, x, y);
+    enum { STEP = GROUP_EDGE * PACKET_EDGE };
+    for (int32_t y = y0; y < y0 + SWARF_TILE && y < c->height; y += STEP)
+        for (int32_t x = x0; x < x0 + SWARF_TILE && x < c->width; x += STEP)
+            (c->middle ? keep_group : paint_group)(c, x, y);
     return SWARF_OK;
 }
 
@@ -73,7 +116,8 @@ static const double looked = 0.2, refined = 0.35, lit = 0.6;
 static swarf_status draw(swarf_canvas *c, const swarf_progress *progress)
 {
     const size_t count = (size_t)tiles(c->width) * (size_t)tiles(c->height);
-    SWARF_TRY(swarf_parallel_for(count, look_tile, c, progress, 0, looked));
+    SWARF_TRY(swarf_parallel_for(count, look_tile, c, progress, 0, c->middle ? looked : 1));
+    if (!c->middle) return SWARF_OK;
     if (c->options->exact)
         SWARF_TRY(swarf_look_refine(&c->look, c->middle, (size_t)c->width * (size_t)c->height, place_of_middle, c,
                                     progress, looked, refined));
@@ -121,21 +165,33 @@ static double depth_of(const swarf_look *look, const double point[3])
     return vector_dot(arm, look->frame.forward);
 }
 
+static void put_colours(const swarf_canvas *c, size_t row, uint8_t *rgba)
+{
+    enum { PART = 64 };
+    const size_t width = (size_t)c->options->width;
+    float colour[PART][4];
+    if (c->coarse == 1) {
+        swarf_shade_encode(c->colour + row * width, width, rgba + 4 * row * width);
+        return;
+    }
+    for (size_t first = 0; first < width; first += PART) {
+        const size_t count = width - first < PART ? width - first : PART;
+        for (size_t i = 0; i < count; i++) blend(c, (int32_t)(first + i), (int32_t)row, colour[i]);
+        swarf_shade_encode(colour, count, rgba + 4 * (row * width + first));
+    }
+}
+
 static swarf_status put_row(void *context, size_t row)
 {
     const output *o = context;
     const swarf_canvas *c = o->canvas;
     const int32_t width = c->options->width, y = (int32_t)row / c->coarse;
-    for (int32_t i = 0; i < width; i++) {
+    const int is_more = o->to->seen || o->to->move || o->to->normal || o->to->depth || o->to->position;
+    if (o->to->rgba) put_colours(c, row, o->to->rgba);
+    for (int32_t i = 0; is_more && i < width; i++) {
         const int32_t x = i / c->coarse;
         const size_t at = row * (size_t)width + (size_t)i, square = swarf_canvas_at(c, x, y);
         const swarf_sight *sight = &c->middle[square];
-        if (o->to->rgba) {
-            float colour[4];
-            memcpy(colour, c->colour[square], sizeof colour);
-            if (c->coarse > 1) blend(c, i, (int32_t)row, colour);
-            swarf_shade_resolve(colour, 1, o->to->rgba + 4 * at);
-        }
         if (o->to->seen) o->to->seen[at] = (uint8_t)sight->seen;
         if (o->to->move) o->to->move[at] = sight->move;
         if (o->to->normal) memcpy(o->to->normal + 3 * at, sight->normal, sizeof sight->normal);
@@ -206,6 +262,15 @@ static int32_t choose_coarse(const swarf_scene *scene, const swarf_picture_optio
     return coarse;
 }
 
+/** Whether a picture is nothing but the colours of one ray each. */
+static int is_plain(const swarf_scene *scene, const swarf_picture_options *o, const swarf_picture_buffers *out)
+{
+    size_t moves;
+    const int passes = o->samples > 1 || o->edges || o->occlusion || o->shadow || o->path || o->outline ||
+                       o->axes_mm > 0 || (o->exact && swarf_scene_surface(scene, &moves));
+    return !passes && !out->depth && !out->normal && !out->position && !out->move && !out->seen;
+}
+
 /** With the scene entered. */
 static swarf_status render(swarf_scene *scene, const swarf_camera *camera, swarf_canvas *c,
                            const swarf_progress *progress, const swarf_picture_buffers *out)
@@ -218,9 +283,11 @@ static swarf_status render(swarf_scene *scene, const swarf_camera *camera, swarf
     SWARF_TRY(swarf_look_begin(scene, camera, options, c->height, &c->look));
     SWARF_TRY(swarf_shading_make(&c->look, options, &c->shading));
     const size_t squares = (size_t)c->width * (size_t)c->height;
-    c->middle = swarf_scene_scratch(scene, squares * (sizeof *c->middle + sizeof *c->colour));
-    c->colour = (float(*)[4])(void *)(c->middle + squares);
-    if (!c->middle)
+    const size_t middles = is_plain(scene, options, out) ? 0 : squares;
+    void *scratch = swarf_scene_scratch(scene, squares * sizeof *c->colour + middles * sizeof *c->middle);
+    c->colour = scratch;
+    c->middle = middles ? (swarf_sight *)(void *)(c->colour + squares) : NULL;
+    if (!scratch)
         return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for %d x %d pixels", (int)options->width,
                           (int)options->height);
     SWARF_TRY(draw(c, progress));
@@ -263,10 +330,12 @@ swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, co
     SWARF_TRY(swarf_scene_enter(scene));
     swarf_look look = {0};
     swarf_sight sight = {0};
-    const double place[2] = {x, y}, xs[SWARF_PACKET] = {x}, ys[SWARF_PACKET] = {y};
+    swarf_sight *const seen = &sight;
+    const double place[2] = {x, y};
+    const swarf_places places = {{x}, {y}, 1};
     swarf_status status = swarf_look_begin(scene, camera, options, options->height, &look);
     if (status == SWARF_OK) {
-        swarf_look_through(&look, xs, ys, 1, &sight);
+        swarf_look_through(&look, &places, 1, &seen);
         if (options->exact) status = swarf_look_refine(&look, &sight, 1, place_of_pick, place, NULL, 0, 1);
     }
     swarf_look_end(&look);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* A picture in the making, for the files that each add something to it.
  *
- *   middle   one sight per grid square (a pixel, or coarse * coarse of them), rows from the top
+ *   middle   one sight per grid square (a pixel, or coarse * coarse of them), rows from the top; NULL in a plain
+ *            picture, which has no use for them once they are shaded
  *   colour   of the squares, linear, premultiplied
  *   sky      how much of the sky is open, per square; NULL: all of it
  *   sun      255 where the light reaches, per square; NULL: everywhere
@@ -43,6 +44,9 @@ static inline size_t swarf_canvas_at(const swarf_canvas *c, int32_t x, int32_t y
 {
     return (size_t)y * (size_t)c->width + (size_t)x;
 }
+
+/** What there is to shade of a sight in square (x, y), at the part of its height. */
+swarf_spot swarf_canvas_spot(const swarf_canvas *canvas, int32_t x, int32_t y, double part_y, const swarf_sight *sight);
 
 /** Fill `sky` and `sun` as the options ask. */
 swarf_status swarf_canvas_light(swarf_canvas *canvas, const swarf_progress *progress, double from, double to);

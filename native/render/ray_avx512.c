@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* The tracing kernels for avx512; see ray_body.h. */
+/* The kernels of rays and pixels for avx512; see ray_body.h and pixel_body.h. */
 #define KERNEL_NAME swarf_ray_kernel_avx512
+#include "render/pixel_body.h"
+
 #include "render/ray_body.h"

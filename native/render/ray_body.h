@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Sixteen rays through one cube; included once per instruction set.
+/* Sixteen rays through the cubes of a grid; included once per instruction set.
  *
- * The rays' way to the cube is computed in double; inside, coordinates relative to its corner are floats below 32, good
- * to 2e-6 voxels. Each lane stands in a cell and goes on by the largest empty block around it: a slot (8 cells), a
- * sub-block (4) or the cell itself. Planes are met at (plane - origin) / direction, the same expression whichever side
- * asks, so that the pieces of a ray in neighbouring cells join without a gap. When all lanes stand in cells that stop
- * them or have left, the trilinear fields of those cells are intersected side by side.
+ * Each lane goes its own way: from cube to cube, in a cube from block to block of 4^3 cells, and from cell to cell in
+ * the blocks that have some which stop it; over one plane at a time, so that nothing on its way is left out. Between
+ * cubes that is done in double. Inside a cube coordinates relative to its corner are floats up to 32, good to 2e-6
+ * voxels. When all lanes stand in cells that stop them or have left, the trilinear fields of those cells are
+ * intersected side by side. What comes in between waits for memory: packets of a group take turns.
  */
 #include "render/ray_kernel.h"
-#include "sweep/counts.h"
-#include "sweep/doubles.h"
+#include "sweep/longs.h"
 
 #include <math.h>
+#include <stddef.h>
 
 /* A surface through voxel centres ends many cells in a value of about 0. What rounding leaves of it, relative to the
  * cubic's coefficients, counts as met; larger would make rays stop that graze at as many voxels. */
@@ -20,11 +20,28 @@ static const float slack = 1e-6f;
 static const float root_tolerance = 1e-6f;
 /* Halvings that close any bracket to that; Newton's method needs two or three steps. */
 enum { ROOT_STEPS = 20 };
+/* Voxels: more than the rounding of a float coordinate in a layout of 2^16 voxels (4e-3). */
+#define SWARF_CUBE_SLACK (1.0f / 64)
 
-typedef struct sight {
-    lanes p[3], d[3], inverse[3];
-    counts up[3]; /* 1 where the direction is positive, else 0 */
-} sight;
+/* The rays of a packet on their way. Lanes that are left and in none of the other masks have been stopped. */
+typedef struct flight {
+    longs cube, slots, slot;      /* addresses: of the cube, its slots, and the one where the block is */
+    doubles entered, hit_from;    /* where the ray came into the cube, along it; of the hits */
+    lanes p[3], d[3], inverse[3]; /* p: where the ray came into the cube, from its corner */
+    lanes t, reach;               /* from there */
+    lanes apart[3];               /* t from one plane between cells to the next */
+    counts up[3], way[3];         /* 1 and 1 where the direction is positive, else 0 and -1 */
+    counts at[3], number;         /* the cube in the grid */
+    counts block[3], cell[3];
+    lanes next_block[3], next_cell[3]; /* t of the planes where they end */
+    lanes next_cube[3], end;           /* along the ray: where that ends in the grid, about; how far to look */
+    counts stops[2];                   /* of the block, in halves */
+    lanes hit_t, slope[3];             /* of the hits: from hit_from, and the field's gradient */
+    mask left, cells, blocks;          /* lanes on their way; in cells, in blocks */
+    mask done, gone;                   /* out of their block, of their cube */
+    mask hits;
+    int in_cells; /* cells have their turn */
+} flight;
 
 typedef struct cells {
     lanes v[8];    /* corner values, number bits 4, 2, 1: x, y, z */
@@ -110,39 +127,39 @@ INLINE mask first_root(const lanes c[4], mask wanted, lanes *root_out)
     return found;
 }
 
-/* Corner values of the cells where lanes `wanted` stand; the others keep what is there. */
-INLINE void load_corners(const swarf_cube *cube, unsigned wanted, const int32_t slot[LANES], const int32_t at[3][LANES],
-                         float v[8][LANES])
+/* Corner values of the cells where lanes `wanted` stand, in slots at these addresses; those of the others are 1. A pair
+ * of values side by side along z goes as one. */
+INLINE void load_corners(unsigned wanted, const int64_t slot[LANES], const counts cell[3], lanes v[8])
 {
-    /* The values lie all over the memory: ask for all of them before waiting for the first. */
-    for (unsigned left = wanted; left; left &= left - 1) {
-        const int lane = __builtin_ctz(left);
-        const int place = (at[0][lane] & 7) << 6 | (at[1][lane] & 7) << 3 | (at[2][lane] & 7);
-        __builtin_prefetch(cube->own[slot[lane]] + place);
-        __builtin_prefetch(cube->own[slot[lane]] + place + 64);
+    float pairs[4][2 * LANES] __attribute__((aligned(64)));
+    int32_t which[4][LANES] __attribute__((aligned(64))), place[4][LANES] __attribute__((aligned(64)));
+    const counts seven = all_counts(7), z = cell[2] & seven, low = least(z, all_counts(6));
+    for (int pair = 0; pair < 4; pair++) {
+        const counts x = (cell[0] & seven) + (pair >> 1), y = (cell[1] & seven) + (pair & 1);
+        store_counts(which[pair], (x >> 3 << 2) + (y >> 3 << 1));
+        store_counts(place[pair], ((x & seven) << 6) + ((y & seven) << 3) + low);
+        store(pairs[pair], all(1));
+        store(pairs[pair] + LANES, all(1));
     }
     for (unsigned left = wanted; left; left &= left - 1) {
         const int lane = __builtin_ctz(left);
-        const int x = at[0][lane] & 7, y = at[1][lane] & 7, z = at[2][lane] & 7;
-        if (x < 7 && y < 7 && z < 7) {
-            const float *low = cube->own[slot[lane]] + (x << 6 | y << 3 | z);
-            v[0][lane] = low[0];
-            v[1][lane] = low[1];
-            v[2][lane] = low[8];
-            v[3][lane] = low[9];
-            v[4][lane] = low[64];
-            v[5][lane] = low[65];
-            v[6][lane] = low[72];
-            v[7][lane] = low[73];
-            continue;
-        }
-        const swarf_cube_slot *own = &cube->slots[slot[lane]];
+        const swarf_cube_slot *own = (const swarf_cube_slot *)(uintptr_t)slot[lane];
+        for (int pair = 0; pair < 4; pair++)
+            memcpy(&pairs[pair][2 * lane], own->values[which[pair][lane]] + place[pair][lane], 2 * sizeof(float));
+    }
+    /* Pairs of which one value lies in the next slot. */
+    for (unsigned left = wanted & ~bits(less(to_lanes(z), all(7))); left; left &= left - 1) {
+        const int lane = __builtin_ctz(left);
+        const swarf_cube_slot *own = (const swarf_cube_slot *)(uintptr_t)slot[lane];
         for (int pair = 0; pair < 4; pair++) {
-            const int px = x + (pair >> 1), py = y + (pair & 1), which = (px >> 3) << 2 | (py >> 3) << 1;
-            const int place = (px & 7) << 6 | (py & 7) << 3;
-            v[2 * pair][lane] = own->values[which][place | z];
-            v[2 * pair + 1][lane] = z < 7 ? own->values[which][place | (z + 1)] : own->values[which | 1][place];
+            pairs[pair][2 * lane] = pairs[pair][2 * lane + 1];
+            pairs[pair][2 * lane + 1] = own->values[which[pair][lane] | 1][place[pair][lane] - 6];
         }
+    }
+    for (int pair = 0; pair < 4; pair++) {
+        const lanes a = load(pairs[pair]), b = load(pairs[pair] + LANES);
+        v[2 * pair] = __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+        v[2 * pair + 1] = __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
     }
 }
 
@@ -166,167 +183,284 @@ INLINE mask intersect_cells(const cells *cell, mask wanted, lanes *t, lanes slop
     return found;
 }
 
-/* Clip the rays to the cells of the cube: where they come in and how much further they go, both in voxels along them,
- * and where that is in the cube. */
-INLINE unsigned clip(const swarf_cube *cube, const swarf_packet *rays, unsigned active, double enter_of[LANES],
-                     lanes local[3], lanes *reach)
+/* The lanes of `going` that cross a plane of each axis first; of several at once the first axis is it, whatever
+ * rounding says of the place there. Returns where. */
+INLINE lanes find_first(const lanes next[3], mask going, mask crosses[3])
 {
+    const lanes here = minimum(next[0], minimum(next[1], next[2]));
+    for (int axis = 0; axis < 3; axis++) {
+        const mask later = less(here, next[axis]);
+        crosses[axis] = except(going, later);
+        going = both(going, later);
+    }
+    return here;
+}
+
+/* Take lanes `going` over the next plane between cells; those that leave their block are done with it. */
+INLINE void step_cells(flight *f, mask going)
+{
+    mask crosses[3];
+    const lanes here = find_first(f->next_cell, going, crosses);
+    counts away = all_counts(0);
+    for (int axis = 0; axis < 3; axis++) {
+        f->cell[axis] = pick_counts(crosses[axis], f->cell[axis] + f->way[axis], f->cell[axis]);
+        f->next_cell[axis] = pick(crosses[axis], f->next_cell[axis] + f->apart[axis], f->next_cell[axis]);
+        away |= (f->cell[axis] >> 2) ^ f->block[axis];
+    }
+    f->t = pick(going, maximum(f->t, here), f->t);
+    const mask out = both(going, meets(away, all_counts(-1)));
+    f->done = either(f->done, out);
+    f->cells = except(going, out);
+}
+
+/* Walk until every lane in cells has been stopped or is done with its block. */
+INLINE void walk_cells(flight *f)
+{
+    const counts three = all_counts(3), one = all_counts(1);
+    while (bits(f->cells)) {
+        const counts place = ((f->cell[0] & 1) << 4) | ((f->cell[1] & three) << 2) | (f->cell[2] & three);
+        const counts word = pick_counts(meets(f->cell[0], one + one), f->stops[1], f->stops[0]);
+        step_cells(f, except(f->cells, meets(word >> place, one)));
+    }
+}
+
+/* Begin with the cells of the blocks where lanes `full` are. */
+INLINE void enter_cells(flight *f, mask full)
+{
+    const counts one = all_counts(1), *b = f->block;
+    const counts number = ((b[0] >> 1) << 4) + ((b[1] >> 1) << 2) + (b[2] >> 1);
+    const counts sub = ((b[0] & one) << 2) + ((b[1] & one) << 1) + (b[2] & one);
+    const counts place = gather_far(full, f->cube + (widen(number) + (int64_t)offsetof(swarf_cube, place))) & 255;
+    const longs slot = f->slots + widen(place * (int32_t)sizeof(swarf_cube_slot));
+    const longs stops = gather_longs(full, slot + widen(sub << 3));
+    f->slot = pick_longs(full, slot, f->slot);
+    f->stops[0] = pick_counts(full, shorten(stops), f->stops[0]);
+    f->stops[1] = pick_counts(full, shorten(stops >> 32), f->stops[1]);
+    for (int axis = 0; axis < 3; axis++) {
+        const counts low = b[axis] << 2, cell = to_counts(f->p[axis] + f->t * f->d[axis]);
+        const counts here = least(greatest(cell, low), low + all_counts(3));
+        const lanes next = (to_lanes(here + f->up[axis]) - f->p[axis]) * f->inverse[axis];
+        f->cell[axis] = pick_counts(full, here, f->cell[axis]);
+        f->next_cell[axis] = pick(full, next, f->next_cell[axis]);
+    }
+    f->cells = either(f->cells, full);
+}
+
+/* One step of the lanes in blocks: into the cells of those that have some to stop them, else to the next block. */
+INLINE void walk_blocks(flight *f)
+{
+    const counts word = (f->block[0] << 3) + (f->block[1] & 4);
+    const counts bit = all_counts(1) << (((f->block[1] & 3) << 3) + f->block[2]);
+    const mask full = both(f->blocks, meets(gather_far(f->blocks, f->cube + widen(word)), bit));
+    if (bits(full)) enter_cells(f, full);
+    const mask going = either(except(f->blocks, full), f->done);
+    mask crosses[3];
+    const lanes here = find_first(f->next_block, going, crosses);
+    for (int axis = 0; axis < 3; axis++) {
+        const lanes next = f->next_block[axis] + all(4) * f->apart[axis];
+        f->block[axis] = pick_counts(crosses[axis], f->block[axis] + f->way[axis], f->block[axis]);
+        f->next_block[axis] = pick(crosses[axis], next, f->next_block[axis]);
+    }
+    f->t = pick(going, maximum(f->t, here), f->t);
+    const counts all_of = f->block[0] | f->block[1] | f->block[2];
+    const mask out = both(going, either(less(f->reach, f->t), meets(all_of, all_counts(~(SWARF_CUBE_BLOCKS - 1)))));
+    f->gone = either(f->gone, out);
+    f->blocks = except(going, out);
+    f->done = mask_of(0);
+}
+
+INLINE counts corner_of(counts at)
+{
+    return (at - all_counts(SWARF_CUBES_BELOW)) << SWARF_CUBE_SHIFT;
+}
+
+/* Take lanes `going` over the next plane between cubes; returns those that may stay within their reach. */
+INLINE mask step_cubes(const swarf_cube_grid *grid, flight *f, mask going)
+{
+    const int32_t stride[3] = {grid->count[1] * grid->count[2], grid->count[2], 1};
+    mask crosses[3];
+    const lanes here = find_first(f->next_cube, going, crosses);
+    for (int axis = 0; axis < 3; axis++) {
+        const lanes next = f->next_cube[axis] + all(SWARF_CUBE_CELLS) * f->apart[axis];
+        f->at[axis] = pick_counts(crosses[axis], f->at[axis] + f->way[axis], f->at[axis]);
+        f->number = pick_counts(crosses[axis], f->number + f->way[axis] * stride[axis], f->number);
+        f->next_cube[axis] = pick(crosses[axis], next, f->next_cube[axis]);
+    }
+    return both(going, less(here, f->end));
+}
+
+/* Clip lanes `there` to the cells of their cubes that stop rays: where they come in and how much further they go, both
+ * in voxels along them, and where that is in the cube. Returns those that come in. */
+INLINE mask clip(const swarf_packet *rays, flight *f, mask there, longs cube)
+{
+    const longs bounds = gather_longs(there, cube + (int64_t)offsetof(swarf_cube, lo));
+    const counts corner = shorten(bounds), above = shorten(bounds >> 32), byte = all_counts(255);
+    const counts lo[3] = {corner & byte, corner >> 8 & byte, corner >> 16 & byte};
+    const counts hi[3] = {above & byte, above >> 8 & byte, above >> 16 & byte};
     doubles enter = all_doubles(0), leave = load_doubles(rays->t);
     for (int axis = 0; axis < 3; axis++) {
         const doubles o = load_doubles(rays->origin[axis]), inverse = load_doubles(rays->inverse[axis]);
-        const doubles a = (all_doubles(cube->corner[axis] + cube->lo[axis]) - o) * inverse;
-        const doubles b = (all_doubles(cube->corner[axis] + cube->hi[axis]) - o) * inverse;
+        const counts from = corner_of(f->at[axis]);
+        const doubles a = (widen_counts(from + lo[axis]) - o) * inverse;
+        const doubles b = (widen_counts(from + hi[axis]) - o) * inverse;
         enter = larger(enter, lesser(a, b));
         leave = lesser(leave, larger(a, b));
     }
-    const unsigned met = up_to(enter, leave) & active;
-    if (!met) return 0;
+    const mask in = both(there, mask_of(up_to(enter, leave)));
+    if (!bits(in)) return in;
+    f->entered = pick_doubles(in, enter, f->entered);
+    f->reach = pick(in, narrow(leave - enter), f->reach);
+    f->t = pick(in, all(0), f->t);
     for (int axis = 0; axis < 3; axis++) {
-        const doubles o = load_doubles(rays->origin[axis]), d = load_doubles(rays->direction[axis]);
-        const doubles at = (o - all_doubles(cube->corner[axis])) + enter * d;
+        const doubles from = load_doubles(rays->origin[axis]) - widen_counts(corner_of(f->at[axis]));
         /* Rounding must not push it out. */
-        local[axis] = clamped(narrow(at), all(cube->lo[axis]), all(cube->hi[axis]));
+        const lanes p =
+            clamped(narrow(from + enter * load_doubles(rays->direction[axis])), to_lanes(lo[axis]), to_lanes(hi[axis]));
+        const counts block = least(to_counts(p), hi[axis] - all_counts(1)) >> 2;
+        const lanes next = (to_lanes((block + f->up[axis]) << 2) - p) * f->inverse[axis];
+        f->p[axis] = pick(in, p, f->p[axis]);
+        f->block[axis] = pick_counts(in, block, f->block[axis]);
+        f->next_block[axis] = pick(in, next, f->next_block[axis]);
     }
-    *reach = narrow(leave - enter);
-    store_doubles(enter_of, enter);
-    return met;
+    return in;
 }
 
-/* Cells (0 .. 31) in which the lanes stand at t: not outside lo .. hi. */
-INLINE counts cell_at(const sight *ray, int axis, lanes t, counts lo, counts hi)
+/* Go on from cube to cube (`stand`: from the one where they stand) until each lane is in one that may stop it, or has
+ * no further to go. */
+static __attribute__((noinline)) void find_cubes(const swarf_cube_grid *grid, const swarf_packet *rays, flight *f,
+                                                 mask going, int stand)
 {
-    return least(greatest(to_counts(ray->p[axis] + t * ray->d[axis]), lo), hi);
-}
-
-/* Take lanes `going` out of blocks of 1 << shift cells, to the next cell; t becomes where that begins. */
-INLINE void advance(const sight *ray, mask going, counts shift, counts cell[3], lanes *t)
-{
-    counts base[3];
-    lanes at[3];
-    const counts one = all_counts(1);
-    for (int axis = 0; axis < 3; axis++) {
-        base[axis] = cell[axis] >> shift;
-        at[axis] = (to_lanes((base[axis] + ray->up[axis]) << shift) - ray->p[axis]) * ray->inverse[axis];
-        base[axis] = base[axis] << shift;
-    }
-    const lanes next = minimum(at[0], minimum(at[1], at[2]));
-    const lanes here = maximum(*t, next);
-    const counts last = (one << shift) - one;
-    mask free = going;
-    for (int axis = 0; axis < 3; axis++) {
-        /* The first axis to reach its plane steps over it, whatever rounding says of the place there. */
-        const mask later = less(next, at[axis]);
-        const mask crosses = except(free, later);
-        free = both(free, later);
-        const counts over = base[axis] + pick_counts(meets(ray->up[axis], one), one << shift, all_counts(-1));
-        const counts within = cell_at(ray, axis, here, base[axis], base[axis] + last);
-        cell[axis] = pick_counts(crosses, over, pick_counts(going, within, cell[axis]));
-    }
-    *t = pick(going, here, *t);
-}
-
-static unsigned trace(const swarf_cube *cube, uint32_t number, swarf_packet *rays, unsigned active)
-{
-    double enter[LANES] __attribute__((aligned(64)));
-    float v[8][LANES] __attribute__((aligned(64)));
-    sight ray;
-    lanes reach;
-    active = clip(cube, rays, active, enter, ray.p, &reach);
-    if (!active) return 0;
-
-    counts cell[3], low[3], high[3];
-    const counts one = all_counts(1);
-    for (int axis = 0; axis < 3; axis++) {
-        ray.d[axis] = narrow(load_doubles(rays->direction[axis]));
-        ray.inverse[axis] = narrow(load_doubles(rays->inverse[axis]));
-        ray.up[axis] = pick_counts(less(all(0), ray.d[axis]), one, all_counts(0));
-        low[axis] = all_counts(cube->lo[axis]);
-        high[axis] = all_counts(cube->hi[axis] - 1);
-        cell[axis] = cell_at(&ray, axis, all(0), low[axis], high[axis]);
-    }
-    const int32_t *const words = (const int32_t *)(const void *)cube->slots;
-    enum { SLOT_WORDS = sizeof(swarf_cube_slot) / sizeof(int32_t) };
-    lanes t = all(0), hit_t = all(INFINITY), slope[3] = {all(0), all(0), all(0)};
-    mask hits = mask_of(0), left = mask_of(active);
-    for (int lane_value = 0; lane_value < 8; lane_value++) store(v[lane_value], all(1)); /* of idle lanes */
-
-    while (bits(left)) {
-        /* Walk on until every lane that is left stands in a cell that stops it. */
-        mask going = left;
-        counts slot = all_counts(0);
-        for (;;) {
-            const counts index = ((cell[0] >> 3) << 4) + ((cell[1] >> 3) << 2) + (cell[2] >> 3);
-            const counts entry = gather_counts(going, cube->entry, index);
-            const counts sub = ((cell[0] >> 2 & one) << 2) + ((cell[1] >> 2 & one) << 1) + (cell[2] >> 2 & one);
-            const mask some = both(going, meets(entry, one << sub));
-            counts shift = pick_counts(meets(entry, all_counts(255)), all_counts(2), all_counts(3));
-            if (bits(some)) {
-                const counts place = entry >> 8;
-                const counts word = place * SLOT_WORDS + ((cell[0] & 7) << 1) + (cell[1] >> 2 & one);
-                const counts bit = one << (((cell[1] & 3) << 3) + (cell[2] & 7));
-                const mask stopped = both(some, meets(gather_counts(some, words, word), bit));
-                slot = pick_counts(stopped, place, slot);
-                shift = pick_counts(some, all_counts(0), shift);
-                going = except(going, stopped);
-            }
-            if (!bits(going)) break;
-            advance(&ray, going, shift, cell, &t);
-            /* A lane that leaves the cube's cells or its reach is done. */
-            mask out = less(reach, t);
-            for (int axis = 0; axis < 3; axis++)
-                out = either(out, meets((cell[axis] - low[axis]) | (high[axis] - cell[axis]), all_counts(INT32_MIN)));
-            out = both(out, going);
-            going = except(going, out);
-            left = except(left, out);
-            if (!bits(going)) break;
+    mask found = mask_of(0);
+    f->left = except(f->left, going);
+    f->gone = mask_of(0);
+    if (!stand) going = step_cubes(grid, f, going);
+    while (bits(going)) {
+        mask some = mask_of(0);
+        longs there = f->cube;
+        /* Until all are in cubes: they are clipped to them together. */
+        for (mask rest = going; bits(rest); rest = step_cubes(grid, f, rest)) {
+            const longs place = address_of(grid->cube) + widen(f->number) * (int64_t)sizeof *grid->cube;
+            const longs cube = gather_longs(rest, place);
+            const mask is_cube = both(rest, is_set(cube));
+            there = pick_longs(is_cube, cube, there);
+            some = either(some, is_cube);
+            rest = except(rest, is_cube);
+            if (!bits(rest)) break;
         }
-        if (!bits(left)) break;
-
-        int32_t slot_of[LANES], at[3][LANES];
-        store_counts(slot_of, slot);
-        for (int axis = 0; axis < 3; axis++) store_counts(at[axis], cell[axis]);
-        load_corners(cube, bits(left), slot_of, (const int32_t(*)[LANES])at, v);
-        cells here;
-        lanes exit = all(INFINITY);
-        for (int corner = 0; corner < 8; corner++) here.v[corner] = load(v[corner]);
-        for (int axis = 0; axis < 3; axis++)
-            exit = minimum(exit, (to_lanes(cell[axis] + ray.up[axis]) - ray.p[axis]) * ray.inverse[axis]);
-        here.t = t;
-        here.span = maximum(exit - t, all(0));
-        for (int axis = 0; axis < 3; axis++) {
-            here.at[axis] = (ray.p[axis] - to_lanes(cell[axis])) + t * ray.d[axis];
-            here.way[axis] = ray.d[axis] * here.span;
-        }
-        lanes at_t, at_slope[3];
-        const mask found = intersect_cells(&here, left, &at_t, at_slope);
-        hit_t = pick(found, at_t, hit_t);
-        for (int axis = 0; axis < 3; axis++) slope[axis] = pick(found, at_slope[axis], slope[axis]);
-        hits = either(hits, found);
-        left = except(left, found);
-        advance(&ray, left, all_counts(0), cell, &t);
-        mask out = less(reach, t);
-        for (int axis = 0; axis < 3; axis++)
-            out = either(out, meets((cell[axis] - low[axis]) | (high[axis] - cell[axis]), all_counts(INT32_MIN)));
-        left = except(left, out);
+        if (!bits(some)) break;
+        const mask in = clip(rays, f, some, there);
+        f->cube = pick_longs(in, there, f->cube);
+        found = either(found, in);
+        going = except(some, in);
+        if (bits(going)) going = step_cubes(grid, f, going);
     }
+    f->slots = pick_longs(found, gather_longs(found, f->cube + (int64_t)offsetof(swarf_cube, slots)), f->slots);
+    f->left = either(f->left, found);
+    f->blocks = found;
+}
 
+/* Start in the cubes where the rays' origins lie, or beside them: the lanes then go on at once. */
+INLINE void start(const swarf_cube_grid *grid, const swarf_packet *rays, flight *f, unsigned active)
+{
+    const counts one = all_counts(1), zero = all_counts(0);
+    f->number = zero;
+    for (int axis = 0; axis < 3; axis++) {
+        const doubles o = load_doubles(rays->origin[axis]), inverse = load_doubles(rays->inverse[axis]);
+        f->d[axis] = narrow(load_doubles(rays->direction[axis]));
+        f->inverse[axis] = narrow(inverse);
+        f->apart[axis] = size(f->inverse[axis]);
+        f->up[axis] = pick_counts(less(all(0), f->d[axis]), one, zero);
+        f->way[axis] = f->up[axis] + f->up[axis] - one;
+        const counts at = to_counts(narrow(o) + all(SWARF_CUBES_BELOW * SWARF_CUBE_CELLS)) >> SWARF_CUBE_SHIFT;
+        f->at[axis] = least(greatest(at, one), all_counts(grid->count[axis] - 2));
+        f->number = f->number * grid->count[axis] + f->at[axis];
+        f->next_cube[axis] = narrow((widen_counts(corner_of(f->at[axis] + f->up[axis])) - o) * inverse);
+        f->p[axis] = f->slope[axis] = f->next_block[axis] = f->next_cell[axis] = all(0);
+        f->cell[axis] = f->block[axis] = zero;
+    }
+    /* Rounding of the float to which planes between cubes are known must not end a ray. */
+    f->end = narrow(load_doubles(rays->t)) + all(SWARF_CUBE_SLACK);
+    f->t = f->reach = all(0);
+    f->stops[0] = f->stops[1] = zero;
+    f->entered = f->hit_from = all_doubles(0);
+    f->hit_t = all(INFINITY);
+    f->cube = f->slots = f->slot = address_of(NULL);
+    f->left = f->cells = f->blocks = f->done = f->hits = mask_of(0);
+    f->in_cells = 0;
+    find_cubes(grid, rays, f, mask_of(active), 1);
+}
+
+/* The lanes' next step; 0 when none walks any more. They change together between cells, blocks and cubes, so that few
+ * wait for the others. */
+INLINE int walk(const swarf_cube_grid *grid, const swarf_packet *rays, flight *f)
+{
+    if (f->in_cells) walk_cells(f);
+    f->in_cells = 0;
+    if (bits(either(f->blocks, f->done)))
+        walk_blocks(f);
+    else if (bits(f->gone))
+        find_cubes(grid, rays, f, f->gone, 0);
+    else
+        f->in_cells = bits(f->cells) != 0;
+    return f->in_cells || bits(either(either(f->blocks, f->done), f->gone));
+}
+
+/* Intersect the cells where lanes have been stopped, and take those that miss on. */
+INLINE void solve(flight *f)
+{
+    int64_t slot[LANES] __attribute__((aligned(64)));
+    cells here;
+    lanes at_t, at_slope[3];
+    memcpy(slot, &f->slot, sizeof slot);
+    load_corners(bits(f->left), slot, f->cell, here.v);
+    const lanes exit = minimum(f->next_cell[0], minimum(f->next_cell[1], f->next_cell[2]));
+    here.t = f->t;
+    here.span = maximum(exit - f->t, all(0));
+    for (int axis = 0; axis < 3; axis++) {
+        here.at[axis] = (f->p[axis] - to_lanes(f->cell[axis])) + f->t * f->d[axis];
+        here.way[axis] = f->d[axis] * here.span;
+    }
+    const mask found = intersect_cells(&here, f->left, &at_t, at_slope);
+    f->hit_t = pick(found, at_t, f->hit_t);
+    f->hit_from = pick_doubles(found, f->entered, f->hit_from);
+    for (int axis = 0; axis < 3; axis++) f->slope[axis] = pick(found, at_slope[axis], f->slope[axis]);
+    f->hits = either(f->hits, found);
+    f->left = except(f->left, found);
+    if (!bits(f->left)) return;
+    step_cells(f, f->left);
+    f->in_cells = 1;
+}
+
+/* Hits and normals of one packet. */
+INLINE unsigned finish(const flight *f, swarf_packet *rays)
+{
+    const lanes *slope = f->slope;
     const lanes square = slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2];
     const mask flat = less(square, all(1e-30f)); /* no gradient: face the ray */
     const lanes scale = all(1) / root(square);
-    float normal[3][LANES], hit_at[LANES];
-    for (int axis = 0; axis < 3; axis++) store(normal[axis], pick(flat, -ray.d[axis], slope[axis] * scale));
-    store(hit_at, hit_t);
-    unsigned updated = 0;
-    for (unsigned rest = bits(hits); rest; rest &= rest - 1) {
-        const int lane = __builtin_ctz(rest);
-        const double at = enter[lane] + (double)hit_at[lane];
-        if (at > rays->t[lane] || (at == rays->t[lane] && number > rays->cube[lane])) continue;
-        rays->t[lane] = at;
-        rays->cube[lane] = number;
-        for (int axis = 0; axis < 3; axis++) rays->normal[axis][lane] = normal[axis][lane];
-        updated |= 1u << lane;
+    const doubles t = f->hit_from + widen_lanes(f->hit_t), limit = load_doubles(rays->t);
+    for (int axis = 0; axis < 3; axis++) store(rays->normal[axis], pick(flat, -f->d[axis], slope[axis] * scale));
+    store_doubles(rays->t, t);
+    return bits(f->hits) & up_to(t, limit);
+}
+
+static void trace(const swarf_cube_grid *grid, swarf_packet rays[], unsigned active[], int count)
+{
+    flight flights[SWARF_GROUP];
+    for (int k = 0; k < count; k++) start(grid, &rays[k], &flights[k], active[k]);
+    for (;;) {
+        unsigned busy, left = 0;
+        do {
+            busy = 0;
+            for (int k = 0; k < count; k++)
+                if (bits(flights[k].left)) busy |= (unsigned)walk(grid, &rays[k], &flights[k]);
+        } while (busy);
+        for (int k = 0; k < count; k++) left |= bits(flights[k].left);
+        if (!left) break;
+        for (int k = 0; k < count; k++)
+            if (bits(flights[k].left)) solve(&flights[k]);
     }
-    return updated;
+    for (int k = 0; k < count; k++) active[k] = finish(&flights[k], &rays[k]);
 }
 
 static void signs(const float values[512], uint64_t words[8])
@@ -373,7 +507,7 @@ static unsigned enter(const swarf_ray_space *space, const swarf_rays *rays, swar
         from[axis] = o;
         way[axis] = d;
         moved = larger(moved, lesser(a, b));
-        leave = lesser(leave, larger(a, b));
+        leave = lesser(leave, larger(a, b) + all_doubles(SWARF_RAY_SLACK));
         store_doubles(out->direction[axis], d);
         store_doubles(out->inverse[axis], inverse);
     }
@@ -383,10 +517,9 @@ static unsigned enter(const swarf_ray_space *space, const swarf_rays *rays, swar
         store_doubles(out->origin[axis],
                       lesser(larger(at, all_doubles(space->lo[axis])), all_doubles(space->hi[axis])));
     }
-    store_doubles(out->t, reach - moved);
-    for (int i = 0; i < LANES; i++) out->cube[i] = UINT32_MAX;
+    store_doubles(out->t, leave - moved);
     store_doubles(moved_of, moved);
     return up_to(moved, leave) & rays->active;
 }
 
-const swarf_ray_kernel KERNEL_NAME = {aim, enter, trace, signs};
+const swarf_ray_kernel KERNEL_NAME = {aim, enter, trace, signs, shade, encode};

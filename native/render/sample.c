@@ -101,8 +101,7 @@ static void draw_edge(float colour[4], float strength)
     colour[3] = (1 - part) * colour[3] + part;
 }
 
-static void shade_sight(const swarf_canvas *c, int32_t x, int32_t y, double part_y, const swarf_sight *sight,
-                        float out[4])
+swarf_spot swarf_canvas_spot(const swarf_canvas *c, int32_t x, int32_t y, double part_y, const swarf_sight *sight)
 {
     const size_t at = swarf_canvas_at(c, x, y);
     float value = NAN;
@@ -113,9 +112,43 @@ static void shade_sight(const swarf_canvas *c, int32_t x, int32_t y, double part
                                    (size_t)(px < width ? px : width - 1)];
     }
     /* Light is known of the middles; a sample of something else takes it from no one. */
-    const int same = sight->seen == c->middle[at].seen;
-    swarf_shade(&c->shading, sight, swarf_canvas_y(c, y, part_y), c->sky && same ? c->sky[at] : 1,
-                c->sun && same ? (float)c->sun[at] / 255 : 1, value, out);
+    const int same = (c->sky || c->sun) && sight->seen == c->middle[at].seen;
+    return (swarf_spot){sight, swarf_canvas_y(c, y, part_y), c->sky && same ? c->sky[at] : 1,
+                        c->sun && same ? (float)c->sun[at] / 255 : 1, value};
+}
+
+/** Shade the middles of the squares of row y that are smooth. */
+static void shade_smooth(const strip *s, size_t row, int32_t y)
+{
+    const swarf_canvas *c = s->canvas;
+    const int32_t *number = s->number + row * (size_t)c->width;
+    swarf_spot spots[SWARF_PACKET];
+    int32_t place[SWARF_PACKET];
+    float colour[SWARF_PACKET][4];
+    int count = 0;
+    for (int32_t x = 0; x < c->width; x++) {
+        if (number[x] < 0) {
+            spots[count] = swarf_canvas_spot(c, x, y, 0.5, &c->middle[swarf_canvas_at(c, x, y)]);
+            place[count++] = x;
+        }
+        if (count < SWARF_PACKET && x + 1 < c->width) continue;
+        swarf_shade(&c->shading, spots, count, colour);
+        for (int i = 0; i < count; i++) memcpy(c->colour[swarf_canvas_at(c, place[i], y)], colour[i], sizeof colour[i]);
+        count = 0;
+    }
+}
+
+/** Edges of a row of squares that have one ray each. Creases on one side only: a line is one square wide. */
+static void draw_row_edges(const swarf_canvas *c, int32_t y)
+{
+    for (int32_t x = 0; x < c->width; x++) {
+        const swarf_sight *own = &c->middle[swarf_canvas_at(c, x, y)];
+        float edge = x + 1 < c->width ? edge_between(&c->look, own, own + 1, 1) : 0;
+        if (y + 1 < c->height) edge = fmaxf(edge, edge_between(&c->look, own, own + c->width, 1));
+        if (x > 0) edge = fmaxf(edge, edge_between(&c->look, own, own - 1, 0));
+        if (y > 0) edge = fmaxf(edge, edge_between(&c->look, own, own - c->width, 0));
+        if (edge > 0) draw_edge(c->colour[swarf_canvas_at(c, x, y)], edge);
+    }
 }
 
 /** Shade the middles of a row, and count the rough squares in it. */
@@ -125,23 +158,11 @@ static swarf_status shade_row(void *context, size_t row)
     const swarf_canvas *c = s->canvas;
     const int32_t y = s->top + (int32_t)row, one_ray = c->options->samples == 1;
     size_t rough = 0;
-    for (int32_t x = 0; x < c->width; x++) {
-        const size_t at = swarf_canvas_at(c, x, y);
-        const swarf_sight *own = &c->middle[at];
-        s->number[row * (size_t)c->width + (size_t)x] = -1;
-        if (!one_ray && is_rough(c, x, y)) {
-            s->number[row * (size_t)c->width + (size_t)x] = (int32_t)rough++;
-            continue;
-        }
-        if (y < s->own || y >= s->end) continue;
-        shade_sight(c, x, y, 0.5, own, c->colour[at]);
-        if (!one_ray || !c->options->edges) continue;
-        /* Creases on one side only: a line is one square wide. */
-        float edge = x + 1 < c->width ? edge_between(&c->look, own, own + 1, 1) : 0;
-        if (y + 1 < c->height) edge = fmaxf(edge, edge_between(&c->look, own, own + c->width, 1));
-        if (x > 0) edge = fmaxf(edge, edge_between(&c->look, own, own - 1, 0));
-        if (y > 0) edge = fmaxf(edge, edge_between(&c->look, own, own - c->width, 0));
-        if (edge > 0) draw_edge(c->colour[at], edge);
+    for (int32_t x = 0; x < c->width; x++)
+        s->number[row * (size_t)c->width + (size_t)x] = !one_ray && is_rough(c, x, y) ? (int32_t)rough++ : -1;
+    if (y >= s->own && y < s->end) {
+        shade_smooth(s, row, y);
+        if (one_ray && c->options->edges) draw_row_edges(c, y);
     }
     s->count[row + 1] = rough;
     return SWARF_OK;
@@ -168,16 +189,23 @@ static swarf_status sample_some(void *context, size_t index)
     const strip *s = context;
     const swarf_canvas *c = s->canvas;
     const int32_t n = c->options->samples;
-    for (size_t number = index * PIECE; number < (index + 1) * PIECE && number < s->rough_count; number++) {
-        const int32_t x = (int32_t)(s->rough[number] % (size_t)c->width);
-        const int32_t y = (int32_t)(s->rough[number] / (size_t)c->width);
-        double place[2][SWARF_PACKET] = {{0}};
-        for (int32_t sub = 0; sub < n * n; sub++) {
-            place[0][sub] = swarf_canvas_x(c, x, (sub % n + 0.5) / n);
-            const int32_t row = sub / n;
-            place[1][sub] = swarf_canvas_y(c, y, (row + 0.5) / n);
+    const size_t end = (index + 1) * PIECE < s->rough_count ? (index + 1) * PIECE : s->rough_count;
+    for (size_t number = index * PIECE; number < end;) {
+        swarf_places places[SWARF_GROUP] = {{.count = 0}};
+        swarf_sight *out[SWARF_GROUP];
+        int count = 0;
+        for (; count < SWARF_GROUP && number < end; count++, number++) {
+            const int32_t x = (int32_t)(s->rough[number] % (size_t)c->width);
+            const int32_t y = (int32_t)(s->rough[number] / (size_t)c->width);
+            for (int32_t sub = 0; sub < n * n; sub++) {
+                const int32_t row = sub / n;
+                places[count].x[sub] = swarf_canvas_x(c, x, (sub % n + 0.5) / n);
+                places[count].y[sub] = swarf_canvas_y(c, y, (row + 0.5) / n);
+            }
+            places[count].count = (unsigned)(n * n);
+            out[count] = s->sample + number * (size_t)(n * n);
         }
-        swarf_look_through(&c->look, place[0], place[1], (unsigned)(n * n), s->sample + number * (size_t)(n * n));
+        swarf_look_through(&c->look, places, count, out);
     }
     return SWARF_OK;
 }
@@ -227,16 +255,20 @@ static swarf_status resolve_some(void *context, size_t index)
         const int32_t y = (int32_t)(s->rough[number] / (size_t)c->width);
         float *sum = c->colour[s->rough[number]];
         if (y < s->own || y >= s->end) continue;
+        const swarf_sight *sample = &s->sample[number * (size_t)(n * n)];
+        swarf_spot spots[SWARF_PACKET];
+        float one[SWARF_PACKET][4];
+        for (int32_t sub = 0; sub < n * n; sub++) {
+            const int32_t sub_row = sub / n;
+            spots[sub] = swarf_canvas_spot(c, x, y, (sub_row + 0.5) / n, &sample[sub]);
+        }
+        swarf_shade(&c->shading, spots, n * n, one);
         memset(sum, 0, sizeof *c->colour);
         for (int32_t sub = 0; sub < n * n; sub++) {
-            const swarf_sight *own = &s->sample[number * (size_t)(n * n) + (size_t)sub];
-            float one[4];
-            const int32_t row = sub / n;
-            shade_sight(c, x, y, (row + 0.5) / n, own, one);
-            const int32_t i = n * x + sub % n, j = n * (y - s->top) + row;
-            const float edge = c->options->edges ? edge_at(s, own, i, j) : 0;
-            if (edge > 0) draw_edge(one, edge);
-            for (int channel = 0; channel < 4; channel++) sum[channel] += one[channel] / (float)(n * n);
+            const int32_t i = n * x + sub % n, j = n * (y - s->top) + sub / n;
+            const float edge = c->options->edges ? edge_at(s, &sample[sub], i, j) : 0;
+            if (edge > 0) draw_edge(one[sub], edge);
+            for (int channel = 0; channel < 4; channel++) sum[channel] += one[sub][channel] / (float)(n * n);
         }
     }
     return SWARF_OK;

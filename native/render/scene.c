@@ -2,12 +2,12 @@
 /* Scene: the cubes of a stock, and rays in world coordinates over them.
  *
  *   grid     a pointer per cube of the layout, NULL where nothing stops a ray; ~130 bytes for each leaf near the
- * surface (a leaf has 2048) list     those that are not NULL, in the order of the grid: the primitives of Embree's tree
- * (embree_scene.cpp) box      of all cells that stop rays, in voxels
+ *            surface (a leaf has 2048)
+ *   box      of all cells that stop rays, in voxels
  *
- * An update looks only at cubes whose slots, or upper neighbours' slots, changed since the last one, and builds the
- * tree over the cubes anew. A ray is moved, in double, to where it enters the box, so that a far eye costs no
- * precision. A ray that starts in material meets no surface from outside and counts as a miss.
+ * An update looks only at cubes whose slots, or upper neighbours' slots, changed since the last one. A ray is moved, in
+ * double, to where it enters the box, so that a far eye costs no precision. A ray that starts in material meets no
+ * surface from outside and counts as a miss.
  */
 #include "render/scene.h"
 
@@ -15,28 +15,18 @@
 #include "base/status.h"
 #include "render/cube.h"
 #include "render/embree_fixtures.h"
-#include "render/embree_scene.h"
 #include "stock/stock.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Cube (x, y, z), 0 .. count - 1 each, has the number (x * count[1] + y) * count[2] + z; its low corner is voxel
- * 32 * (x - 1, y - 1, z - 1) of the layout: the cells below the layout's first voxels belong to slots outside it. */
-typedef struct cube_grid {
-    int32_t count[3];
-    swarf_cube **cube; /* NULL where nothing stops a ray */
-} cube_grid;
-
 struct swarf_scene {
     swarf_stock *stock;
     swarf_tree_layout layout;
     uint32_t seen; /* the stock's generation that the cubes show, 0: none */
-    cube_grid grid;
-    const swarf_cube **list;
-    size_t list_count;
-    swarf_accel *accel;
+    swarf_cube_grid grid;
+    size_t cube_count;        /* that are there; 0 while the scene is not whole */
     swarf_fixtures *fixtures; /* NULL: none */
     swarf_surface *surface;   /* NULL: none */
     size_t surface_moves;
@@ -50,7 +40,7 @@ struct swarf_scene {
 /* Of a ray before the first picture has told: a small computer's. */
 static const double first_ray_ms = 3e-4;
 
-static size_t grid_size(const cube_grid *grid)
+static size_t grid_size(const swarf_cube_grid *grid)
 {
     return (size_t)grid->count[0] * (size_t)grid->count[1] * (size_t)grid->count[2];
 }
@@ -72,9 +62,9 @@ static swarf_status lay_out(swarf_scene *scene)
     scene->layout = *swarf_tree_get_layout(scene->stock->tree);
     scene->space.voxel = scene->layout.voxel;
     memcpy(scene->space.origin, scene->layout.origin, sizeof scene->space.origin);
-    cube_grid grid;
+    swarf_cube_grid grid = {.cube = NULL};
     for (int axis = 0; axis < 3; axis++)
-        grid.count[axis] = scene->layout.count[axis] * (SWARF_NODE_DIM / SWARF_CUBE_DIM) + 1;
+        grid.count[axis] = scene->layout.count[axis] * (SWARF_NODE_DIM / SWARF_CUBE_CELLS) + SWARF_CUBES_BELOW + 1;
     if (scene->grid.cube && memcmp(grid.count, scene->grid.count, sizeof grid.count) == 0) return SWARF_OK;
     scene->seen = 0;
     grid.cube = calloc(grid_size(&grid), sizeof *grid.cube);
@@ -92,7 +82,7 @@ static swarf_status refresh_cube(swarf_scene *scene, size_t number, const int32_
 {
     swarf_cube *cube = scene->grid.cube[number], made = {0};
     if (cube) made = *cube;
-    for (int axis = 0; axis < 3; axis++) made.corner[axis] = SWARF_CUBE_DIM * (at[axis] - 1);
+    for (int axis = 0; axis < 3; axis++) made.corner[axis] = SWARF_CUBE_CELLS * (at[axis] - SWARF_CUBES_BELOW);
     swarf_status status = swarf_cube_make(&made, scene->stock->tree, &scene->tiles);
     if (made.slot_count == 0) {
         swarf_cube_free(&made);
@@ -113,13 +103,14 @@ static swarf_status refresh_cube(swarf_scene *scene, size_t number, const int32_
 /** Whether a slot that the cells of this cube see has changed since the scene last looked. */
 static int is_stale(const swarf_scene *scene, const int32_t at[3])
 {
-    enum { ACROSS = SWARF_NODE_DIM / SWARF_CUBE_DIM };
+    enum { ACROSS = SWARF_NODE_DIM / SWARF_CUBE_CELLS };
     for (int number = 0; number < 8; number++) {
-        const int32_t up[3] = {at[0] - 1 + (number >> 2), at[1] - 1 + (number >> 1 & 1), at[2] - 1 + (number & 1)};
+        int32_t up[3] = {at[0] + (number >> 2), at[1] + (number >> 1 & 1), at[2] + (number & 1)};
         size_t node = 0;
         unsigned cube = 0;
         int out = 0;
         for (int axis = 0; axis < 3; axis++) {
+            up[axis] -= SWARF_CUBES_BELOW;
             out |= up[axis] < 0 || up[axis] >= ACROSS * scene->layout.count[axis];
             node = node * (size_t)scene->layout.count[axis] + (size_t)(up[axis] / ACROSS);
             cube = cube * ACROSS + (unsigned)(up[axis] % ACROSS);
@@ -132,38 +123,32 @@ static int is_stale(const swarf_scene *scene, const int32_t at[3])
 static swarf_status refresh_row(void *context, size_t row)
 {
     swarf_scene *scene = context;
-    const cube_grid *grid = &scene->grid;
-    int32_t at[3] = {(int32_t)row / grid->count[1], (int32_t)row % grid->count[1], 0};
-    for (; at[2] < grid->count[2]; at[2]++)
+    const swarf_cube_grid *grid = &scene->grid;
+    int32_t at[3] = {(int32_t)row / grid->count[1], (int32_t)row % grid->count[1], 1};
+    if (at[0] == 0 || at[0] == grid->count[0] - 1 || at[1] == 0 || at[1] == grid->count[1] - 1) return SWARF_OK;
+    for (; at[2] < grid->count[2] - 1; at[2]++)
         if (is_stale(scene, at)) SWARF_TRY(refresh_cube(scene, row * (size_t)grid->count[2] + (size_t)at[2], at));
     return SWARF_OK;
 }
 
-/** The cubes that are there, and their box. */
-static swarf_status list_cubes(swarf_scene *scene)
+/** Count the cubes that are there, and measure their box. */
+static void measure(swarf_scene *scene)
 {
     const size_t size = grid_size(&scene->grid);
-    size_t count = 0;
-    for (size_t number = 0; number < size; number++) count += scene->grid.cube[number] != NULL;
-    const swarf_cube **list = malloc((count + 1) * sizeof *list);
-    if (!list) return swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory");
-    free(scene->list);
-    scene->list = list;
-    scene->list_count = 0;
     for (int axis = 0; axis < 3; axis++) {
         scene->space.lo[axis] = INFINITY;
         scene->space.hi[axis] = -INFINITY;
     }
+    scene->cube_count = 0;
     for (size_t number = 0; number < size; number++) {
         const swarf_cube *cube = scene->grid.cube[number];
         if (!cube) continue;
-        list[scene->list_count++] = cube;
+        scene->cube_count++;
         for (int axis = 0; axis < 3; axis++) {
             scene->space.lo[axis] = fmin(scene->space.lo[axis], cube->corner[axis] + cube->lo[axis]);
             scene->space.hi[axis] = fmax(scene->space.hi[axis], cube->corner[axis] + cube->hi[axis]);
         }
     }
-    return SWARF_OK;
 }
 
 /** With the stock entered. */
@@ -171,17 +156,13 @@ static swarf_status refresh(swarf_scene *scene)
 {
     const uint32_t generation = swarf_stock_generation(scene->stock);
     if (scene->seen == generation) return SWARF_OK;
-    scene->list_count = 0; /* until all is in place: a failure leaves a scene of nothing, and all of it stale */
+    scene->cube_count = 0; /* until all is in place: a failure leaves a scene of nothing, and all of it stale */
     SWARF_TRY(lay_out(scene));
-    swarf_status status =
+    const swarf_status status =
         swarf_parallel_for((size_t)scene->grid.count[0] * (size_t)scene->grid.count[1], refresh_row, scene, NULL, 0, 1);
     scene->seen = 0;
-    if (status == SWARF_OK) status = list_cubes(scene);
-    if (status == SWARF_OK) status = swarf_accel_set(scene->accel, scene->list, scene->list_count);
-    if (status != SWARF_OK) {
-        scene->list_count = 0;
-        return status;
-    }
+    SWARF_TRY(status);
+    measure(scene);
     scene->seen = generation;
     return SWARF_OK;
 }
@@ -192,9 +173,7 @@ swarf_status swarf_scene_create(swarf_stock *stock, swarf_scene **out)
     swarf_scene *scene = calloc(1, sizeof *scene);
     if (!scene) return swarf_fail(SWARF_ERROR_MEMORY, "scene: out of memory");
     scene->stock = stock;
-
-    swarf_status status = swarf_accel_create(&scene->accel);
-    if (status == SWARF_OK) status = swarf_scene_update(scene);
+    const swarf_status status = swarf_scene_update(scene);
     if (status != SWARF_OK) {
         swarf_scene_destroy(scene);
         return status;
@@ -214,11 +193,9 @@ swarf_status swarf_scene_update(swarf_scene *scene)
 void swarf_scene_destroy(swarf_scene *scene)
 {
     if (!scene) return;
-    swarf_accel_destroy(scene->accel);
     swarf_fixtures_destroy(scene->fixtures);
     swarf_surface_release(scene->surface);
     free_grid(scene);
-    free(scene->list);
     free(scene->scratch);
     free(scene);
 }
@@ -250,9 +227,9 @@ void swarf_scene_box(const swarf_scene *scene, swarf_box *out)
 {
     for (int axis = 0; axis < 3; axis++) {
         out->lo[axis] =
-            scene->list_count ? scene->layout.origin[axis] + scene->layout.voxel * scene->space.lo[axis] : 1;
+            scene->cube_count ? scene->layout.origin[axis] + scene->layout.voxel * scene->space.lo[axis] : 1;
         out->hi[axis] =
-            scene->list_count ? scene->layout.origin[axis] + scene->layout.voxel * scene->space.hi[axis] : 0;
+            scene->cube_count ? scene->layout.origin[axis] + scene->layout.voxel * scene->space.hi[axis] : 0;
     }
 }
 
@@ -309,44 +286,64 @@ static int is_inside(const swarf_scene *scene, const double p[3])
 {
     double local[3], value[8];
     int32_t low[3];
+    size_t number = 0;
     for (int axis = 0; axis < 3; axis++) {
         low[axis] = (int32_t)floor(p[axis]);
         local[axis] = p[axis] - low[axis];
+        const int32_t at = low[axis] + SWARF_CUBES_BELOW * SWARF_CUBE_CELLS;
+        if (at < 0 || at / SWARF_CUBE_CELLS >= scene->grid.count[axis]) return 0;
+        number = number * (size_t)scene->grid.count[axis] + (size_t)(at / SWARF_CUBE_CELLS);
     }
-    for (int number = 0; number < 8; number++) {
-        const int32_t ijk[3] = {low[0] + (number >> 2), low[1] + (number >> 1 & 1), low[2] + (number & 1)};
-        value[number] = swarf_stock_value(scene->stock, ijk);
+    const swarf_cube *cube = scene->grid.cube[number];
+    const int x = low[0] & 31, y = low[1] & 31, z = low[2] & 31;
+    if (!cube || !(cube->block[x >> 2] >> ((y >> 2) * 8 + (z >> 2)) & 1))
+        return swarf_stock_value(scene->stock, low) < 0; /* all air, or all so deep that no ray gets there */
+    const swarf_cube_slot *slot = &cube->slots[cube->place[(x >> 3) * 16 + (y >> 3) * 4 + (z >> 3)]];
+    const uint64_t stop = slot->stop[(x >> 2 & 1) * 4 + (y >> 2 & 1) * 2 + (z >> 2 & 1)];
+    if (!(stop >> ((x & 3) * 16 + (y & 3) * 4 + (z & 3)) & 1)) return 0;
+    for (int corner = 0; corner < 8; corner++) {
+        const int up[3] = {(x & 7) + (corner >> 2), (y & 7) + (corner >> 1 & 1), (z & 7) + (corner & 1)};
+        value[corner] = slot->values[(up[0] >> 3) << 2 | (up[1] >> 3) << 1 | up[2] >> 3]
+                                    [(up[0] & 7) << 6 | (up[1] & 7) << 3 | (up[2] & 7)];
     }
     for (int axis = 0, half = 4; axis < 3; axis++, half /= 2)
-        for (int number = 0; number < half; number++)
-            value[number] += local[axis] * (value[number + half] - value[number]);
+        for (int corner = 0; corner < half; corner++)
+            value[corner] += local[axis] * (value[corner + half] - value[corner]);
     return value[0] < 0;
 }
 
-void swarf_scene_trace(const swarf_scene *scene, swarf_rays *rays, unsigned *inside)
+/** Put a packet on its way; returns the rays that may meet something. */
+static unsigned enter(const swarf_scene *scene, swarf_rays *rays, swarf_packet *packet, double moved[SWARF_PACKET],
+                      unsigned *inside)
 {
-    swarf_packet packet;
-    double moved[SWARF_PACKET];
-    for (int lane = 0; lane < SWARF_PACKET; lane++) rays->distance[lane] = INFINITY;
-    rays->hit = 0;
-    if (inside) *inside = 0;
-    if (!scene->list_count) return;
-    unsigned active = swarf_ray_kernel_current()->enter(&scene->space, rays, &packet, moved);
+    unsigned active = swarf_ray_kernel_current()->enter(&scene->space, rays, packet, moved);
+    *inside = 0;
     for (unsigned left = active; left; left &= left - 1) {
         const int lane = __builtin_ctz(left);
         if (moved[lane] > 0) continue;
-        const double at[3] = {packet.origin[0][lane], packet.origin[1][lane], packet.origin[2][lane]};
-        if (!is_inside(scene, at)) continue;
-        active &= ~(1u << lane);
-        if (inside) *inside |= 1u << lane;
+        const double at[3] = {packet->origin[0][lane], packet->origin[1][lane], packet->origin[2][lane]};
+        if (is_inside(scene, at)) *inside |= 1u << lane;
     }
-    if (!active) return;
-    swarf_accel_trace(scene->accel, &packet, active);
-    for (unsigned left = active; left; left &= left - 1) {
-        const int lane = __builtin_ctz(left);
-        if (packet.cube[lane] == UINT32_MAX) continue;
-        rays->hit |= 1u << lane;
-        rays->distance[lane] = (moved[lane] + packet.t[lane]) * scene->layout.voxel;
-        for (int axis = 0; axis < 3; axis++) rays->normal[axis][lane] = packet.normal[axis][lane];
+    return active & ~*inside;
+}
+
+void swarf_scene_trace(const swarf_scene *scene, swarf_rays rays[], unsigned inside[], int count)
+{
+    swarf_packet packet[SWARF_GROUP];
+    double moved[SWARF_GROUP][SWARF_PACKET];
+    unsigned active[SWARF_GROUP];
+    for (int i = 0; i < count; i++) {
+        for (int lane = 0; lane < SWARF_PACKET; lane++) rays[i].distance[lane] = INFINITY;
+        rays[i].hit = inside[i] = 0;
+        if (scene->cube_count) active[i] = enter(scene, &rays[i], &packet[i], moved[i], &inside[i]);
+    }
+    if (!scene->cube_count) return;
+    swarf_ray_kernel_current()->trace(&scene->grid, packet, active, count);
+    for (int i = 0; i < count; i++) {
+        rays[i].hit = active[i];
+        for (int lane = 0; lane < SWARF_PACKET; lane++)
+            if (active[i] >> lane & 1)
+                rays[i].distance[lane] = (moved[i][lane] + packet[i].t[lane]) * scene->layout.voxel;
+        memcpy(rays[i].normal, packet[i].normal, sizeof rays[i].normal);
     }
 }

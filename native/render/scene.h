@@ -6,9 +6,9 @@
 #include "render/ray_kernel.h"
 #include "swarf/render.h"
 
-/** First hits of a packet. A ray that starts in material meets nothing, and has its bit in *inside (may be NULL). The
- *  scene has been entered. Many threads at once. */
-void swarf_scene_trace(const swarf_scene *scene, swarf_rays *rays, unsigned *inside);
+/** First hits of `count` <= SWARF_GROUP packets. Rays that start in material meet nothing and have their bits in
+ *  inside[i]. The scene has been entered. Many threads at once. */
+void swarf_scene_trace(const swarf_scene *scene, swarf_rays rays[], unsigned inside[], int count);
 
 /** Keep others from changing the stock while rays run over it, and bring the scene up to date with it:
  *  SWARF_ERROR_BUSY when it is in use. */

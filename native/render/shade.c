@@ -9,27 +9,20 @@
 #include <string.h>
 
 /* IEC 61966-2-1 in eight bits, by linear value. At black, where it is steepest, an entry is a quarter of a step. */
-enum { SRGB_SIZE = 1 << 14 };
-static uint8_t srgb[SRGB_SIZE + 1];
+static uint8_t srgb[SWARF_SRGB_SIZE + 1];
 static pthread_once_t srgb_once = PTHREAD_ONCE_INIT;
 
 static void fill_srgb(void)
 {
-    for (int i = 0; i <= SRGB_SIZE; i++) {
-        const double x = (double)i / SRGB_SIZE;
+    for (int i = 0; i <= SWARF_SRGB_SIZE; i++) {
+        const double x = (double)i / SWARF_SRGB_SIZE;
         srgb[i] = (uint8_t)((x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055) * 255 + 0.5);
     }
 }
 
-/* A. Gooch, B. Gooch, P. Shirley, E. Cohen: A Non-Photorealistic Lighting Model for Automatic Technical Illustration,
- * SIGGRAPH 1998, section 4.2: blue and yellow shifts, and how much of the object's colour each side shows. Gentler
- * shifts and more of the colour than theirs: colours mean something here. */
-static const float gooch_blue = 0.14f, gooch_yellow = 0.10f, gooch_alpha = 0.22f, gooch_beta = 0.86f;
 /* Towards the light in the camera's right, up and backward: from the upper left. Faces towards the viewer, upwards and
  * to the side get three different tones. */
 static const double light_camera[3] = {-0.36, 0.76, 0.46};
-/* How dark a closed pocket gets, and what is left of the light in a shadow. */
-static const float sky_least = 0.12f, sun_least = 0.35f;
 /* Strength and sharpness of the gloss on steel. */
 static const float gloss = 0.35f, gloss_power = 24;
 
@@ -157,59 +150,73 @@ static void hatch(const swarf_shading *s, const swarf_sight *sight, float out[3]
     blend(out, section_colour, (float)fmin(fmax(1.6 - off, 0), 1));
 }
 
-void swarf_shade(const swarf_shading *shading, const swarf_sight *sight, double y, float sky, float sun, float value,
-                 float out[4])
+/* Base colour and gloss of what takes light; 0: it has a colour of its own, which goes to `out`. */
+static int take_base(const swarf_shading *s, const swarf_spot *spot, float base[3], float *glossy, float out[4])
 {
-    float base[3], glossy = 0;
-    switch (sight->seen) {
-    case SWARF_SEEN_NOTHING: backdrop(shading->options, (float)(0.5 + 0.5 * y), out); return;
+    *glossy = 0;
+    switch (spot->sight->seen) {
+    case SWARF_SEEN_NOTHING: backdrop(s->options, (float)(0.5 + 0.5 * spot->y), out); return 0;
     case SWARF_SEEN_SECTION:
-        hatch(shading, sight, out);
+        hatch(s, spot->sight, out);
         out[3] = 1;
-        return;
-    case SWARF_SEEN_FLUTES:
-        memcpy(base, flutes_colour, sizeof base);
-        glossy = gloss;
-        break;
-    case SWARF_SEEN_SHANK:
-        memcpy(base, shank_colour, sizeof base);
-        glossy = gloss;
-        break;
-    case SWARF_SEEN_HOLDER:
-        memcpy(base, holder_colour, sizeof base);
-        glossy = gloss;
-        break;
-    case SWARF_SEEN_FIXTURE: memcpy(base, fixture_colour, sizeof base); break;
-    default: surface_colour(shading, sight, value, base); break;
+        return 0;
+    case SWARF_SEEN_FLUTES: memcpy(base, flutes_colour, sizeof flutes_colour); break;
+    case SWARF_SEEN_SHANK: memcpy(base, shank_colour, sizeof shank_colour); break;
+    case SWARF_SEEN_HOLDER: memcpy(base, holder_colour, sizeof holder_colour); break;
+    case SWARF_SEEN_FIXTURE: memcpy(base, fixture_colour, sizeof fixture_colour); return 1;
+    default: surface_colour(s, spot->sight, spot->value, base); return 1;
     }
-    const float *n = sight->normal, *l = shading->light;
-    const float cosine = l[0] * n[0] + l[1] * n[1] + l[2] * n[2];
-    const float warmth = (0.5f + 0.5f * cosine) * (sun_least + (1 - sun_least) * sun);
-    float shine = 0;
-    if (glossy > 0) { /* the light's mirror image, seen along the view */
-        float along = 0;
-        for (int axis = 0; axis < 3; axis++)
-            along -= (2 * cosine * n[axis] - l[axis]) * (float)shading->look->frame.forward[axis];
-        if (along > 0) shine = glossy * powf(along, gloss_power);
-    }
-    for (int channel = 0; channel < 3; channel++) {
-        const float cool = gooch_alpha * base[channel] + (channel == 2 ? gooch_blue * base[channel] : 0);
-        const float warm = gooch_beta * base[channel] + (channel == 2 ? 0 : gooch_yellow);
-        out[channel] = (warmth * warm + (1 - warmth) * cool) * (sky_least + (1 - sky_least) * sky) + shine;
-    }
-    out[3] = 1;
+    *glossy = gloss;
+    return 1;
 }
 
-static float clamp01(float x)
+/* The light's mirror image, seen along the view. */
+static float shine(const swarf_shading *s, const float normal[3], float glossy)
 {
-    return x > 0 ? (x < 1 ? x : 1) : 0;
+    const float *l = s->light;
+    const float cosine = l[0] * normal[0] + l[1] * normal[1] + l[2] * normal[2];
+    float along = 0;
+    for (int axis = 0; axis < 3; axis++)
+        along -= (2 * cosine * normal[axis] - l[axis]) * (float)s->look->frame.forward[axis];
+    return along > 0 ? glossy * powf(along, gloss_power) : 0;
 }
 
-void swarf_shade_resolve(const float sum[4], float weight, uint8_t out[4])
+void swarf_shade(const swarf_shading *shading, const swarf_spot spots[], int count, float (*out)[4])
 {
-    const float alpha = sum[3] * weight;
-    const float scale = alpha > 0 ? weight / alpha : 0;
-    for (int channel = 0; channel < 3; channel++)
-        out[channel] = srgb[(int)(clamp01(sum[channel] * scale) * SRGB_SIZE + 0.5f)];
-    out[3] = (uint8_t)(clamp01(alpha) * 255 + 0.5f);
+    swarf_tones tones;
+    float lit[3][SWARF_PACKET], glossy[SWARF_PACKET];
+    int lit_spots[SWARF_PACKET], used = 0;
+    for (int i = 0; i < count; i++) {
+        float base[3];
+        if (!take_base(shading, &spots[i], base, &glossy[used], out[i])) continue;
+        for (int axis = 0; axis < 3; axis++) {
+            tones.base[axis][used] = base[axis];
+            tones.normal[axis][used] = spots[i].sight->normal[axis];
+        }
+        tones.sky[used] = spots[i].sky;
+        tones.sun[used] = spots[i].sun;
+        lit_spots[used++] = i;
+    }
+    if (used == 0) return;
+    memcpy(tones.light, shading->light, sizeof tones.light);
+    swarf_ray_kernel_current()->shade(&tones, lit);
+    for (int k = 0; k < used; k++) {
+        float *colour = out[lit_spots[k]];
+        const float more = glossy[k] > 0 ? shine(shading, spots[lit_spots[k]].sight->normal, glossy[k]) : 0;
+        for (int channel = 0; channel < 3; channel++) colour[channel] = lit[channel][k] + more;
+        colour[3] = 1;
+    }
+}
+
+void swarf_shade_encode(const float (*colour)[4], size_t count, uint8_t *out)
+{
+    const swarf_ray_kernel *kernel = swarf_ray_kernel_current();
+    size_t at = 0;
+    for (; at + 4 <= count; at += 4) kernel->encode(colour[at], srgb, out + 4 * at);
+    if (at == count) return;
+    float last[4][4] = {{0}};
+    uint8_t bytes[4][4];
+    memcpy(last, colour[at], (count - at) * sizeof *colour);
+    kernel->encode(last[0], srgb, bytes[0]);
+    memcpy(out + 4 * at, bytes, (count - at) * sizeof *bytes);
 }

@@ -16,12 +16,18 @@ typedef struct swarf_shading {
 /** SWARF_ERROR_ARGUMENT when the colouring lacks what it is about. */
 swarf_status swarf_shading_make(const swarf_look *look, const swarf_picture_options *options, swarf_shading *out);
 
-/** Colour of what was seen in a pixel at place (x, y) of the picture, RGBA premultiplied. `sky` is how much of the sky
- *  is open there and `sun` whether the light reaches it, 0 .. 1; `value` the deviation, NAN: none. */
-void swarf_shade(const swarf_shading *shading, const swarf_sight *sight, double y, float sky, float sun, float value,
-                 float out[4]);
+/** One place of a picture that wants a colour. */
+typedef struct swarf_spot {
+    const swarf_sight *sight;
+    double y;       /**< -1 .. 1 in the picture */
+    float sky, sun; /**< how much of the sky is open there and whether the light reaches it, 0 .. 1 */
+    float value;    /**< the deviation, NAN: none */
+} swarf_spot;
 
-/** A sum of `1 / weight` colours to eight bits per channel: IEC 61966-2-1 (sRGB), not premultiplied. */
-void swarf_shade_resolve(const float sum[4], float weight, uint8_t out[4]);
+/** Colours of `count` <= SWARF_PACKET spots, RGBA premultiplied. */
+void swarf_shade(const swarf_shading *shading, const swarf_spot spots[], int count, float (*out)[4]);
+
+/** Colours to eight bits per channel: IEC 61966-2-1 (sRGB), not premultiplied. */
+void swarf_shade_encode(const float (*colour)[4], size_t count, uint8_t *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Render: a picture of a stock by packet ray casting (Embree) over the leaves of its level set. */
+/* Render: a picture of a stock by packet ray casting over the leaves of its level set. */
 #ifndef SWARF_RENDER_H
 #define SWARF_RENDER_H
 

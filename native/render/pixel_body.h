@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Light on sixteen pixels, and four colours to bytes; included once per instruction set, beside ray_body.h. */
+#include "render/ray_kernel.h"
+#include "sweep/counts.h"
+
+/* A. Gooch, B. Gooch, P. Shirley, E. Cohen: A Non-Photorealistic Lighting Model for Automatic Technical Illustration,
+ * SIGGRAPH 1998, section 4.2: blue and yellow shifts, and how much of the object's colour each side shows. Gentler
+ * shifts and more of the colour than theirs: colours mean something here. */
+static const float gooch_blue = 0.14f, gooch_yellow = 0.10f, gooch_alpha = 0.22f, gooch_beta = 0.86f;
+/* How dark a closed pocket gets, and what is left of the light in a shadow. */
+static const float sky_least = 0.12f, sun_least = 0.35f;
+
+static void shade(const swarf_tones *in, float out[3][LANES])
+{
+    const lanes half = all(0.5f), one = all(1);
+    const lanes cosine = all(in->light[0]) * load(in->normal[0]) + all(in->light[1]) * load(in->normal[1]) +
+                         all(in->light[2]) * load(in->normal[2]);
+    const lanes warmth = (half + half * cosine) * (all(sun_least) + all(1 - sun_least) * load(in->sun));
+    const lanes open = all(sky_least) + all(1 - sky_least) * load(in->sky);
+    for (int channel = 0; channel < 3; channel++) {
+        const lanes base = load(in->base[channel]);
+        const lanes cool = all(channel == 2 ? gooch_alpha + gooch_blue : gooch_alpha) * base;
+        const lanes warm = all(gooch_beta) * base + all(channel == 2 ? 0 : gooch_yellow);
+        store(out[channel], (warmth * warm + (one - warmth) * cool) * open);
+    }
+}
+
+static void encode(const float colour[4 * 4], const uint8_t srgb[SWARF_SRGB_SIZE + 1], uint8_t out[4 * 4])
+{
+    int32_t place[LANES] __attribute__((aligned(64)));
+    const lanes zero = all(0), one = all(1), half = all(0.5f), c = load(colour);
+    const lanes alpha = __builtin_shufflevector(c, c, 3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15);
+    const lanes scale = pick(less(zero, alpha), one / alpha, zero);
+    const mask is_alpha = mask_of(0x8888);
+    const lanes part = clamped(pick(is_alpha, c, c * scale), zero, one);
+    store_counts(place, to_counts(part * pick(is_alpha, all(255), all(SWARF_SRGB_SIZE)) + half));
+    for (int i = 0; i < LANES; i++) out[i] = (i & 3) == 3 ? (uint8_t)place[i] : srgb[place[i]];
+}
