@@ -128,11 +128,11 @@ PyObject *mesh_placed(PyObject *self, PyObject *given)
 
 const char mesh_origins_doc[] =
     "origins($self, surface, *, moves=None, reach=0.0, progress=None)\n--\n\n"
-    "What made each triangle: a read-only (m, 3) int32 view of set-up (0: the Surface's own, 1: the one before ...), "
+    "What made each triangle: a read-only (m, 4) int32 view of set-up (0: the Surface's own, 1: the one before ...), "
     "move\n"
-    "(-1: the first shape, -2: not known) and piece of the cutter or the first shape. Looked for within ``reach`` mm "
-    "(0: a\n"
-    "voxel) of the triangle's middle.";
+    "(-1: the first shape, -2: not known), piece of the cutter or the first shape, and kind of face: 0 other, 1 "
+    "plane,\n"
+    "2 cylinder, 3 cone, 4 sphere, 5 torus. Looked for within ``reach`` mm (0: a voxel) of the triangle's middle.";
 
 PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords)
 {
@@ -149,7 +149,7 @@ PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords)
         return NULL;
     const size_t rows = swarf_mesh_triangles(mesh).triangle_count;
     swarf_surface_point *points = PyMem_Calloc(rows + 1, sizeof *points);
-    PyObject *values = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(3 * rows * sizeof(int32_t))), *result = NULL;
+    PyObject *values = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(4 * rows * sizeof(int32_t))), *result = NULL;
     native_call call;
     if (!points) {
         PyErr_NoMemory();
@@ -160,12 +160,13 @@ PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords)
             int set_up = 0;
             int64_t move = -2;
             if (points[i].move != -2) swarf_surface_origin(surface, points[i].move, &set_up, &move);
-            out[3 * i] = set_up;
-            out[3 * i + 1] = (int32_t)move;
-            out[3 * i + 2] = points[i].piece;
+            out[4 * i] = set_up;
+            out[4 * i + 1] = (int32_t)move;
+            out[4 * i + 2] = points[i].piece;
+            out[4 * i + 3] = (int32_t)swarf_surface_face(surface, &points[i]);
         }
         if (!call_end(&call, state, status))
-            result = buffer_view(state, values, out, "i", sizeof(int32_t), rows, 3, NULL);
+            result = buffer_view(state, values, out, "i", sizeof(int32_t), rows, 4, NULL);
     }
     PyMem_Free(points);
     Py_XDECREF(values);

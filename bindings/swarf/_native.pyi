@@ -664,9 +664,10 @@ class Mesh:
     def origins(
         self, surface: Surface, *, moves: Optional[int] = None, reach: float = 0.0, progress: Progress = None
     ) -> memoryview:
-        """What made each triangle: a read-only (m, 3) int32 view of set-up (0: the Surface's own, 1: the one before
-        ...), move (-1: the first shape, -2: not known) and piece of the cutter or the first shape. Looked for within
-        ``reach`` mm (0: a voxel) of the triangle's middle."""
+        """What made each triangle: a read-only (m, 4) int32 view of set-up (0: the Surface's own, 1: the one before
+        ...), move (-1: the first shape, -2: not known), piece of the cutter or the first shape, and kind of face: 0
+        other, 1 plane, 2 cylinder, 3 cone, 4 sphere, 5 torus. Looked for within ``reach`` mm (0: a voxel) of the
+        triangle's middle."""
     def section(self, point: Point, normal: Point) -> tuple[tuple[tuple[float, float, float], ...], ...]:
         """Where the plane through ``point`` cuts the mesh: a tuple of polylines, each a tuple of (x, y, z) in mm,
         material on the left seen against ``normal``. In a closed mesh each goes on from its last point to its

@@ -63,7 +63,7 @@ def by_operation(mesh: Mesh, surface: Surface, job: Job, moves: Optional[int] = 
     """A colour for each operation of the job, one for all earlier set-ups, one for what no move made."""
     records, sections = job.program.moves, job.program.sections
     colours: list[Optional[RGB]] = []
-    for set_up, move, _ in mesh.origins(surface, moves=moves).tolist():
+    for set_up, move, *_ in mesh.origins(surface, moves=moves).tolist():
         if move == -2:
             colours.append(None)
         elif move < 0 or set_up:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Sequence
+from typing import Any, Optional, Sequence
 
-from ._native import Mesh
+from ._native import Mesh, Surface
 
 #: What a plane in words looks like.
 PLANE_HELP = "x=MM, y=MM, z=MM, or X,Y,Z,NX,NY,NZ: a point and the normal"
@@ -63,3 +63,17 @@ def thinnest(mesh: Mesh) -> dict[str, Any]:
     corners = mesh.triangles[where:where + 1].tolist()[0]
     points = [mesh.vertices[corner:corner + 1].tolist()[0] for corner in corners]
     return {"least_mm": least, "place": [sum(point[k] for point in points) / 3 for k in range(3)]}
+
+
+#: Kinds of faces that CAD programs know, as in the last column of Mesh.origins(); the first is all else.
+FACES = ("other", "plane", "cylinder", "cone", "sphere", "torus")
+
+
+def faces(mesh: Mesh, surface: Surface, moves: Optional[int] = None) -> dict[str, float]:
+    """Area of a mesh, mm2, by the kind of face that its triangles are on."""
+    areas = dict.fromkeys(FACES, 0.0)
+    vertices = mesh.vertices.tolist()
+    for (*_, kind), (a, b, c) in zip(mesh.origins(surface, moves=moves).tolist(), mesh.triangles.tolist()):
+        u, v = ([q - p for p, q in zip(vertices[a], vertices[end])] for end in (b, c))
+        areas[FACES[kind]] += math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2
+    return areas

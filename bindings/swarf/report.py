@@ -7,7 +7,7 @@ import os
 import tempfile
 from typing import Any, Optional
 
-from . import _native, loads, timing
+from . import _native, loads, parts, timing
 from .job import Job
 from .simulate import Result
 from .verify import Verification, operation_of
@@ -97,7 +97,7 @@ def make(
         "removed_mm3_by_operation": removed,
         "memory_peak_mb": round(_native.memory_peak() / 1e6, 3),
         "bounding_box": None if box is None else {"lo": list(box[0]), "hi": list(box[1])},
-        "mesh": _mesh(result.mesh),
+        "mesh": _mesh(result),
         "findings": _findings(names, simulation),
         "notes": list(job.notes),
         "loose_pieces": [
@@ -192,15 +192,19 @@ def _loads(done: Verification, names: list[str]) -> dict[str, Any]:
     }
 
 
-def _mesh(mesh: Optional[_native.Mesh]) -> Optional[dict[str, Any]]:
+def _mesh(result: Result) -> Optional[dict[str, Any]]:
+    mesh = result.mesh
     if mesh is None:
         return None
+    areas = None if result.surface is None else parts.faces(mesh, result.surface)
     return {
         "vertices": mesh.vertex_count,
         "triangles": mesh.triangle_count,
         "closed": mesh.closed,
         "volume_mm3": mesh.volume,
         "error_mm": mesh.contour.error_mm if mesh.contour else None,
+        "area_mm2_by_face": areas,
+        "analytic_share": None if not areas or not mesh.area else 1 - areas["other"] / sum(areas.values()),
     }
 
 

@@ -314,7 +314,7 @@ swarf_status swarf_mesh_split(const swarf_mesh *mesh, const double point[3], con
     splitting s = {.t = swarf_mesh_triangles(mesh)};
     SWARF_TRY(take_plane(&s, point, normal));
     const swarf_topology topology = swarf_mesh_topology(mesh);
-    if (topology.boundary_edges || topology.misoriented_edges || !topology.closed)
+    if (s.t.triangle_count && (topology.boundary_edges || topology.misoriented_edges || !topology.closed))
         return swarf_fail(SWARF_ERROR_GEOMETRY, "mesh: only closed meshes can be split; %zu edges are open",
                           topology.boundary_edges);
     uint32_t *opposite;

@@ -151,3 +151,34 @@ def test_lumps(done):
     assert sum(lump.volume_mm3 for lump in lumps) == pytest.approx(done.stock.volume(), rel=0.02)
     with pytest.raises(ValueError, match="points"):
         done.stock.lumps([(1, 2)])
+
+
+@pytest.mark.parametrize("tool, moves, wanted", [
+    # a slot: planes, and a round end on either side
+    ("flat:d=6,l=20", ((10, 20, 5), (10, 20, -4), (50, 20, -4)),
+     {"plane": 2 * (2400 + 600 + 400) + 2 * 40 * 4, "cylinder": math.pi * 6 * 4}),
+    # a ball's groove: a half cylinder below, at both ends a quarter of a sphere; walls above
+    ("ball:d=6,l=20", ((10, 20, 5), (10, 20, -5), (50, 20, -5)),
+     {"cylinder": 40 * math.pi * 3 + math.pi * 6 * 2, "sphere": 2 * math.pi * 9}),
+    # a drill: a cylinder and its point
+    ("drill:d=6,l=20,a=90", ((30, 20, 5), (30, 20, -7)), {"cylinder": math.pi * 6 * 4, "cone": math.pi * 9 * math.sqrt(2)}),
+    # a bull-nose mill standing: the ring of its corner
+    ("bull:d=8,r=1,l=20", ((30, 20, 5), (30, 20, -4)), {"torus": 2 * math.pi * (3 * math.pi / 2 + 1), "cylinder": math.pi * 8 * 3}),
+    # down a slope: walls are planes, what the rim of the disc leaves is no face of these kinds
+    ("flat:d=6,l=20", ((10, 20, 0), (50, 20, -8)), {"other": 6.0 * math.hypot(40, 8)}),
+])
+def test_faces(tool, moves, wanted):
+    program = swarf.Program(start=moves[0])
+    program.add_operation("cut")
+    program.set_section(tool=1)
+    for place in moves[1:]:
+        program.add_line(place, feed_mm_min=100)
+    job = Job(name="faces", program=program, tools={1: swarf.Cutter(tool)},
+              stock={"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)})
+    made = swarf.simulate(job, voxel=0.25)
+    found = parts.faces(made.mesh, made.surface)
+    assert sum(found.values()) == pytest.approx(made.mesh.area, rel=1e-6)
+    for kind, area in wanted.items():
+        assert found[kind] == pytest.approx(area, rel=0.2 if kind == "other" else 0.04)  # by the middles of triangles, (kind, found)
+    if "other" not in wanted:
+        assert found["other"] < 1e-3 * made.mesh.area, found

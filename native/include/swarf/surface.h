@@ -51,6 +51,18 @@ typedef struct swarf_surface_point {
  *  ...; index -1 and the number of set-ups before for the first shape of all. Other numbers come out as that. */
 SWARF_API void swarf_surface_origin(const swarf_surface *surface, int64_t move, int *set_up, int64_t *index);
 
+/** What a face is, as CAD programs know them. */
+typedef enum swarf_face_kind {
+    SWARF_FACE_OTHER = 0, /**< of a first shape that is no block, of edges on slopes, of helices ... */
+    SWARF_FACE_PLANE = 1,
+    SWARF_FACE_CYLINDER = 2,
+    SWARF_FACE_CONE = 3,
+    SWARF_FACE_SPHERE = 4,
+    SWARF_FACE_TORUS = 5
+} swarf_face_kind;
+/** What face a point of the surface is on, by the piece of the cutter and the move that made it. */
+SWARF_API swarf_face_kind swarf_surface_face(const swarf_surface *surface, const swarf_surface_point *point);
+
 /** What can matter within one small box: scratch of one thread. Keeps the surface alive. */
 typedef struct swarf_surface_near swarf_surface_near;
 SWARF_API swarf_status swarf_surface_near_create(const swarf_surface *surface, swarf_surface_near **out);
