@@ -12,6 +12,7 @@ from typing import Any, Optional
 
 from ._native import Cutter, Mesh, Program
 from .accept import Acceptance
+from .records import MOVE, SECTION, section_and_kind
 
 
 @dataclass
@@ -40,3 +41,11 @@ class Job:
     accepted: list[Acceptance] = field(default_factory=list)  #: findings that the job's document accepts
     fixtures: list[Mesh] = field(default_factory=list)  #: closed: clamps, a vice, the table
     teeth: dict[int, int] = field(default_factory=dict)  #: cutting edges around each tool, where they are known
+
+
+def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:
+    """Name of the operation (None: none) and line of a move."""
+    *_, line, _, section_kind = MOVE.unpack_from(job.program.moves, move * MOVE.size)
+    index = SECTION.unpack_from(job.program.sections, section_and_kind(section_kind)[0] * SECTION.size)[1]
+    names = job.program.operations
+    return (names[index] if 0 <= index < len(names) else None), line

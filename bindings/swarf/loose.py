@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, Optional, Sequence
 
 from ._native import Lump, Stock
-from .job import Job
-from .records import MOVE, SECTION, section_and_kind
+from .job import Job, operation_of
 
 #: Pieces of fewer voxels are crumbs: what a voxel between two passes leaves may be none.
 CRUMB_VOXELS = 27
@@ -27,8 +26,8 @@ class Loose:
 
     lump: Lump
     move: int  #: that freed it; -1: it was loose before
-    line: int
     operation: Optional[str]
+    line: int
 
     @property
     def text(self) -> str:
@@ -69,13 +68,6 @@ def _freed_by(stock: Stock, job: Job, lumps: Sequence[Lump], wanted: set[Lump], 
     _freed_by(stock, job, lumps, apart, begin, middle, freed)
 
 
-def _move_of(job: Job, move: int) -> tuple[int, Optional[str]]:
-    *_, line, _, section_kind = MOVE.unpack_from(job.program.moves, move * MOVE.size)
-    index = SECTION.unpack_from(job.program.sections, section_and_kind(section_kind)[0] * SECTION.size)[1]
-    names = job.program.operations
-    return line, names[index] if 0 <= index < len(names) else None
-
-
 def find(job: Job, left: Stock, make_first: Callable[[], Any]) -> LoosePieces:
     """The loose pieces of what is `left` of a job's stock; make_first() gives the stock as it was first, where it is
     needed."""
@@ -86,6 +78,6 @@ def find(job: Job, left: Stock, make_first: Callable[[], Any]) -> LoosePieces:
     first, ordered = make_first(), [lumps[0], *pieces]
     freed: dict[Lump, int] = {lump: -1 for lump in _apart(first, ordered)}
     _freed_by(first, job, ordered, set(pieces) - set(freed), 0, len(job.program), freed)
-    found = [Loose(lump, freed[lump], *(_move_of(job, freed[lump]) if freed[lump] >= 0 else (0, None)))
+    found = [Loose(lump, freed[lump], *(operation_of(job, freed[lump]) if freed[lump] >= 0 else (None, 0)))
              for lump in pieces]
     return LoosePieces(found, len(lumps) - 1 - len(found))

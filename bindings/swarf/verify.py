@@ -9,12 +9,12 @@ from typing import Any, Callable, Optional, Sequence
 
 from . import accept as accepting
 from . import loads as loading
-from . import readers
+from . import loose, readers
 from ._native import Check, Cluster, Deviation, Mesh, Scene, Solid, Stock, compare_place, measure_deviation
 from .accept import Acceptance
-from .job import Job
+from .job import Job, operation_of
 from .loads import Limits
-from .records import MOVE, SECTION, section_and_kind
+from .records import MOVE
 from .simulate import Progress, Result, make_stock
 
 #: What a design file can be, by its suffix.
@@ -167,6 +167,7 @@ def verify(
                         limits=limits, region=region)
     found = [*findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
              *_design_findings(solid, first, mesh), *fixture_findings(first, fixtures, clamps),
+             *_loose_findings(job, stock, first),
              *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
     made.findings = settle(found, [*job.accepted, *accept])
     return made
@@ -181,14 +182,6 @@ def settle(findings: Sequence[Verdict], acceptances: Sequence[Acceptance]) -> li
                 for idle in accepting.apply(acceptances, settled)]
     order = ("error", "warning", "note")
     return sorted(settled, key=lambda found: (found.accepted is not None, order.index(found.severity)))
-
-
-def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:
-    """Name of the operation (None: none) and line of a move."""
-    *_, line, _, section_kind = MOVE.unpack_from(job.program.moves, move * MOVE.size)
-    index = SECTION.unpack_from(job.program.sections, section_and_kind(section_kind)[0] * SECTION.size)[1]
-    names = job.program.operations
-    return (names[index] if 0 <= index < len(names) else None), line
 
 
 def findings_of(job: Job, checked: Check, voxel: float) -> list[Verdict]:
@@ -224,6 +217,11 @@ def _end_of(job: Job, move: int) -> tuple[float, float, float]:
     """Where a move ends."""
     x, y, z, *_ = MOVE.unpack_from(job.program.moves, move * MOVE.size)
     return x, y, z
+
+
+def _loose_findings(job: Job, left: Stock, first: Stock) -> list[Verdict]:
+    return [Verdict("warning", piece.text, "loose", piece.operation, piece.line, piece.move, piece.lump.inside,
+                    amount=piece.lump.volume_mm3, t=1.0) for piece in loose.find(job, left, first.copy).pieces]
 
 
 def _design_findings(solid: Solid, first: Stock, mesh: Mesh) -> list[Verdict]:

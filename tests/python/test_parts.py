@@ -96,6 +96,13 @@ def test_loose_pieces_and_their_lines(done):
     assert volumes[0] == pytest.approx(done.stock.lumps()[0][0].volume_mm3, rel=0.02)
 
 
+def test_loose_pieces_are_findings(job):
+    found = [finding for finding in swarf.verify(job, voxel=0.5, loads=False).findings if finding.kind == "loose"]
+    assert [(finding.severity, finding.line, finding.operation) for finding in found] == [("warning", 9, "T1"),
+                                                                                         ("warning", 14, "T1")]
+    assert found[1].amount == pytest.approx(7 * 10 * 5, rel=0.15) and found[1].place[0] > 20
+
+
 def test_loose_from_the_beginning(job):
     two = swarf.Stock.box((0, 0, -5), (10, 20, 0), VOXEL)
     other = swarf.Mesh.from_stock(swarf.Stock.box((12, 0, -5), (20, 20, 0), VOXEL))

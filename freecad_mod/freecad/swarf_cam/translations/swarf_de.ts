@@ -423,6 +423,10 @@
             <translation>Von der Ecke ansehen (0); 1 bis 6: die Seiten</translation>
         </message>
         <message>
+            <source>Loose pieces</source>
+            <translation>Lose Stücke</translation>
+        </message>
+        <message>
             <source>Material</source>
             <translation>Material</translation>
         </message>

@@ -28,6 +28,7 @@ KINDS = {
     "travel": QT_TRANSLATE_NOOP("Swarf", "Travel"), "tool": QT_TRANSLATE_NOOP("Swarf", "Tool"),
     "load": QT_TRANSLATE_NOOP("Swarf", "Loads"), "uncut": QT_TRANSLATE_NOOP("Swarf", "Not simulated"),
     "acceptance": QT_TRANSLATE_NOOP("Swarf", "Idle acceptances"),
+    "loose": QT_TRANSLATE_NOOP("Swarf", "Loose pieces"),
 }
 
 # Numbers of pins.
