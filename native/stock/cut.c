@@ -421,49 +421,55 @@ static void keep_scratch(struct scratch *scratch)
     free_scratch(__atomic_exchange_n(&kept_scratch, scratch, __ATOMIC_ACQ_REL));
 }
 
-/* Cut the first tracks of a list as one batch, or with `deepest` only see how deep they go (`measured`: cut them and
- * see how much goes); *done: how many. With `undo` what is changed is kept, in a layer of its own. */
+/* What is wanted of batches beside the cut itself. */
+struct wish {
+    swarf_undo *undo;      /* what is changed is kept there, each batch in a layer of its own; or NULL */
+    struct touch *deepest; /* nothing is cut, only seen how deep it would go, `measured`: cut, and how much goes */
+    int measured;
+    float enough; /* see cut_work */
+};
+
+/* Cut the first tracks of a list as one batch; *done: how many. */
 static swarf_status cut_batch(swarf_stock *stock, const swarf_body *body, const swarf_track *tracks, size_t count,
-                              swarf_undo *undo, const swarf_progress *progress, double from, double to,
-                              struct touch *deepest, int measured, float enough, size_t *done)
+                              const struct wish *wish, const swarf_progress *progress, double from, double to,
+                              size_t *done)
 {
     const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
+    struct touch *deepest = wish->deepest;
     struct bins bins = {0};
+    int found = 0;
     struct scratch *scratch = take_scratch(swarf_threads());
     swarf_status status = scratch ? fill_bins(layout, body, tracks, count, &bins)
                                   : swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
-    if (status == SWARF_OK && undo) status = swarf_undo_open(undo, layout, bins.columns, bins.column_count);
+    if (status == SWARF_OK && wish->undo) status = swarf_undo_open(wish->undo, layout, bins.columns, bins.column_count);
     if (status == SWARF_OK) {
         const double until = bins.tracks == count ? to : from + (to - from) * (double)bins.tracks / (double)count;
-        struct cut_work work = {stock,
-                                layout,
-                                swarf_kernel_current(),
-                                body,
-                                tracks,
-                                bins.columns,
-                                bins.starts,
-                                bins.numbers,
-                                layout->count[1] * NODE_COLUMNS,
-                                scratch->columns,
-                                scratch->count,
-                                NULL,
-                                measured,
-                                enough,
-                                NULL,
-                                undo};
-        int found = 0;
-        if (deepest && !measured) work.found = &found;
+        struct cut_work work = {.stock = stock,
+                                .layout = layout,
+                                .kernel = swarf_kernel_current(),
+                                .body = body,
+                                .tracks = tracks,
+                                .columns = bins.columns,
+                                .starts = bins.starts,
+                                .numbers = bins.numbers,
+                                .columns_y = layout->count[1] * NODE_COLUMNS,
+                                .scratch = scratch->columns,
+                                .scratch_count = scratch->count,
+                                .measured = wish->measured,
+                                .enough = wish->enough,
+                                .found = deepest && !wish->measured ? &found : NULL,
+                                .undo = wish->undo};
         if (deepest && !(work.touches = calloc(bins.column_count + 1, sizeof *work.touches)))
             status = swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
         if (status == SWARF_OK)
             status = swarf_parallel_for(bins.column_count, cut_column, &work, progress, from, until);
         for (size_t i = 0; deepest && status == SWARF_OK && i < bins.column_count; i++)
-            if (measured)
+            if (wish->measured)
                 deepest->removed += work.touches[i].removed;
             else if (work.touches[i].depth > deepest->depth)
                 *deepest = work.touches[i];
         free(work.touches);
-        if (undo) swarf_undo_close(undo);
+        if (wish->undo) swarf_undo_close(wish->undo);
     }
     keep_scratch(scratch);
     free(bins.starts);
@@ -479,10 +485,11 @@ static swarf_status cut_tracks(swarf_stock *stock, const swarf_body *body, const
 {
     struct deferred deferred = {progress, 0};
     const swarf_progress patient = {report_deferred, &deferred};
+    const struct wish wish = {.undo = undo};
     for (size_t first = 0, done = 0; first < list->count; first += done) {
         const double at = from + (to - from) * (double)first / (double)list->count;
-        SWARF_TRY(cut_batch(stock, body, list->tracks + first, list->count - first, undo,
-                            progress && progress->fn && !undo ? &patient : progress, at, to, NULL, 0, 0, &done));
+        SWARF_TRY(cut_batch(stock, body, list->tracks + first, list->count - first, &wish,
+                            progress && progress->fn && !undo ? &patient : progress, at, to, &done));
         if (deferred.cancelled) return swarf_fail(SWARF_ERROR_CANCELLED, "cancelled");
     }
     return swarf_progress_report(progress, to);
@@ -514,9 +521,10 @@ swarf_status swarf_cut_measured(swarf_stock *stock, const swarf_body *body, cons
 {
     const double voxel = swarf_stock_voxel(stock);
     struct touch sum = {0};
+    const struct wish wish = {.deepest = &sum, .measured = 1};
     swarf_tree_next_generation(stock->tree);
     for (size_t first = 0, done = 0; first < count && body->component_count; first += done)
-        SWARF_TRY(cut_batch(stock, body, tracks + first, count - first, NULL, NULL, 0, 1, &sum, 1, 0, &done));
+        SWARF_TRY(cut_batch(stock, body, tracks + first, count - first, &wish, NULL, 0, 1, &done));
     *removed = sum.removed * voxel * voxel * voxel;
     return SWARF_OK;
 }
@@ -526,14 +534,14 @@ swarf_status swarf_cut_touch(swarf_stock *stock, const swarf_body *body, const s
 {
     const swarf_tree_layout *layout = swarf_tree_get_layout(stock->tree);
     struct touch deepest = {0};
+    const struct wish wish = {.deepest = &deepest, .enough = (float)enough};
     swarf_track_list list = {0};
     swarf_status status = SWARF_OK;
     for (size_t i = 0; i < count && status == SWARF_OK; i++)
         status = swarf_track_append(&list, &paths[i], layout->origin, layout->voxel);
     for (size_t first = 0, done = 0;
          first < list.count && status == SWARF_OK && body->component_count && !(deepest.depth > enough); first += done)
-        status = cut_batch(stock, body, list.tracks + first, list.count - first, NULL, NULL, 0, 1, &deepest, 0,
-                           (float)enough, &done);
+        status = cut_batch(stock, body, list.tracks + first, list.count - first, &wish, NULL, 0, 1, &done);
     free(list.tracks);
     if (status != SWARF_OK) return status;
     *depth = deepest.depth;

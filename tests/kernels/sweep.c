@@ -45,8 +45,7 @@ static void shift(swarf_path *path, const double by[3])
 
 static long compare(swarf_isa isa, test_random *random)
 {
-    const char *wish = getenv("SWARF_TEST_FULL");
-    const int full = wish && strcmp(wish, "0") != 0;
+    const int full = test_size() == TEST_FULL;
     static double points[MOST][3];
     static float reference[MOST], value[MOST];
     const double voxels[] = {0.1, 0.02, 0.33, 3.7}, shifts[][3] = {{0, 0, 0}, {812.3, -1503.7, 211.1}};

@@ -208,7 +208,7 @@ static void check_cutter(int index, test_random *random)
     swarf_path paths[MOVES], shuffled[MOVES];
     swarf_cutter *cutter = case_cutter(index, &name);
     voxel = index % 3 == 0 ? 0.1 : test_random_in(random, 0.11, 0.3);
-    if (!getenv("SWARF_TEST_FULL")) voxel *= 2.2;
+    if (test_size() != TEST_FULL) voxel *= 2.2;
     draw_moves(random, paths, MOVES);
     draw_points(random);
 

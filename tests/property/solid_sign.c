@@ -160,7 +160,7 @@ static void random_point(const compound *c, const swarf_box *box, test_random *r
 
 static void check(compound *c, test_random *random)
 {
-    const size_t count = getenv("SWARF_TEST_FULL") ? 1000000 : 20000;
+    const size_t count = test_size() == TEST_FULL ? 1000000 : 20000;
     const swarf_triangles triangles = shape_view(&c->shape);
     swarf_solid *solid = NULL;
     if (!CHECK_OK(swarf_solid_create(&triangles, NULL, &solid))) return;

@@ -152,8 +152,7 @@ static void *work(void *unused)
 
 int main(int count, char **argument)
 {
-    const char *full = getenv("SWARF_TEST_FULL");
-    points_per_case = full && strcmp(full, "0") != 0 ? 100000 : 1000;
+    points_per_case = test_size() == TEST_FULL ? 100000 : 1000;
     if (getenv("SWARF_TEST_POINTS")) points_per_case = (strtoul(getenv("SWARF_TEST_POINTS"), NULL, 10) / 1000) * 1000;
     seed = test_random_begin(20240611).state;
     if (count > 1) only_cutter = atoi(argument[1]);

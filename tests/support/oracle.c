@@ -261,11 +261,23 @@ int oracle_sign(const oracle_body *body, const swarf_path *path, const double po
     return sign_between(&s, 0, a, 1, b, oracle_length(path));
 }
 
+static double shortest_edge(const oracle_body *body)
+{
+    double shortest = INFINITY;
+    for (int i = 0; i < body->part_begin[body->parts]; i++) {
+        const oracle_edge *edge = &body->edge[i];
+        shortest = fmin(shortest, hypot(edge->to[0] - edge->from[0], edge->to[1] - edge->from[1]));
+    }
+    return shortest;
+}
+
 double oracle_distance(const oracle_body *body, const swarf_path *path, const double point[3])
 {
     enum { MOST = 4096 };
     const double length = oracle_length(path), golden = 0.6180339887498949;
-    int steps = 16 + (int)(length / (0.1 * body->radius));
+    /* two teeth may be nearest in turn, a step of the meridian apart */
+    const double fine = fmin(fmax(0.5 * shortest_edge(body), 0.01 * body->radius), 0.1 * body->radius);
+    int steps = 16 + (int)(length / fine);
     if (steps > MOST) steps = MOST;
     double sample[MOST + 1];
     double least = INFINITY;

@@ -78,6 +78,17 @@ uint64_t test_random_below(test_random *random, uint64_t count)
     return next(random) % count;
 }
 
+static int is_wished(const char *name)
+{
+    const char *wish = getenv(name);
+    return wish && *wish && strcmp(wish, "0") != 0;
+}
+
+int test_size(void)
+{
+    return is_wished("SWARF_TEST_FULL") ? TEST_FULL : is_wished("SWARF_TEST_LIGHT") ? TEST_LIGHT : TEST_USUAL;
+}
+
 const char *test_source(void)
 {
     return SWARF_SOURCE_DIR;

@@ -371,8 +371,7 @@ static void check_far_moves(void)
 /* A million moves (ten with SWARF_TEST_FULL) in a small stock, as one batch; time and memory are printed. */
 static void check_many_moves(void)
 {
-    const char *full = getenv("SWARF_TEST_FULL");
-    const size_t count = full && strcmp(full, "0") != 0 ? 10000000 : 1000000;
+    const size_t count = test_size() == TEST_FULL ? 10000000 : 1000000;
     const clock_t start = clock();
     swarf_path *paths = malloc(count * sizeof *paths);
     if (!paths) exit(2);

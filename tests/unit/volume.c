@@ -84,10 +84,11 @@ static swarf_stock *make_stock(const swarf_box *box)
 static void check_surface(const char *what, swarf_stock *stock, const swarf_box *box, const oracle_body *body,
                           const swarf_path *path, test_random *random)
 {
-    enum { TRIES = 4000, WANTED = 300 };
+    enum { TRIES = 4000 };
+    const int wanted = test_size() == TEST_LIGHT ? 60 : test_size() == TEST_FULL ? 300 : 120;
     int found = 0;
     double worst = 0, worst_at[3] = {0};
-    for (int i = 0; i < TRIES && found < WANTED; i++) {
+    for (int i = 0; i < TRIES && found < wanted; i++) {
         double near[3], ends[2][3], at[3];
         oracle_random_point(body, path, 0.5 * voxel, random, near);
         const int axis = (int)test_random_below(random, 3);
