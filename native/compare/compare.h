@@ -43,7 +43,7 @@ typedef struct swarf_points {
     uint32_t *triangle;
     uint8_t *kind; /**< SWARF_POINT_EDGE; _UNTOUCHED where it lies on the first stock, whatever its distance */
     size_t leaf_count;
-    size_t *slot;  /**< of each leaf, SWARF_NODE_SLOTS to a node */
+    size_t *slot;  /**< of each leaf, swarf_layout_slot(), ascending */
     size_t *first; /**< point of each leaf, and one more: their number */
 } swarf_points;
 
@@ -83,6 +83,16 @@ swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *de
  *  measured->slots; the others of these stay 0. on_stock has distances. */
 swarf_status swarf_match_slots(const swarf_stock *stock, const swarf_solid *design, const swarf_measured *measured,
                                uint8_t *settled);
+
+/** Put parts end to end, in their order; free `count` parts and the array they are in (NULL is legal). */
+swarf_status swarf_samples_join(const swarf_samples *parts, size_t count, swarf_samples *out);
+void swarf_samples_free(swarf_samples *parts, size_t count);
+
+/** Whether options leave out a place that is nearest to a triangle of the design. */
+int swarf_deviation_ignores(const swarf_deviation_options *o, uint32_t triangle, const float xyz[3]);
+/** Of measured->on_design those that these options are beyond; where the stock's band does not tell how far, their
+ * value is what they are known to be beyond. */
+swarf_status swarf_find_missing(const swarf_measured *measured, const swarf_deviation_options *o, swarf_samples *out);
 
 /** Gather the samples, all of them beyond tolerance, into clusters and share out the volumes. */
 swarf_status swarf_cluster_samples(const swarf_tree_layout *layout, const swarf_samples *on_stock,

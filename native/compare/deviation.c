@@ -13,10 +13,6 @@
 /* Voxels by which values may be off, on smooth faces and within one voxel of edges: there the field is rounded. */
 static const double smooth_error = 0.02, edge_error = 0.5;
 
-/* Voxels that a feature of the design must be off by, beyond tolerance, to be found from the design's side: trilinear
- * values next to edges are rounded, and what is thinner than this the stock's own surface shows. */
-static const double feature_error = 1;
-
 /* Points of one piece of work; bins that percentiles are found in. */
 enum { PIECE = 1 << 14, BINS = 1 << 16 };
 
@@ -65,7 +61,7 @@ static swarf_status check_options(const swarf_deviation_options *o, size_t sourc
     return SWARF_OK;
 }
 
-static int is_ignored(const swarf_deviation_options *o, uint32_t triangle, const float xyz[3])
+int swarf_deviation_ignores(const swarf_deviation_options *o, uint32_t triangle, const float xyz[3])
 {
     if (o->ignore && o->ignore[triangle]) return 1;
     for (int k = 0; k < 3; k++)
@@ -81,7 +77,7 @@ static uint8_t judge_point(const struct work *work, size_t i, int *beyond)
     const double distance = points->distance[i], value = distance - o->allowance_mm;
     uint8_t kind = points->kind[i] & SWARF_POINT_EDGE;
     *beyond = 0;
-    if (is_ignored(o, points->triangle[i], points->xyz + 3 * i)) return kind | SWARF_POINT_IGNORED;
+    if (swarf_deviation_ignores(o, points->triangle[i], points->xyz + 3 * i)) return kind | SWARF_POINT_IGNORED;
     const double error = work->measured->layout.voxel * (kind & SWARF_POINT_EDGE ? edge_error : smooth_error);
     *beyond = value > o->excess_mm + error || value < -o->gouge_mm - error;
     if (*beyond && points->kind[i] & SWARF_POINT_UNTOUCHED) {
@@ -196,37 +192,12 @@ static swarf_status join_beyond(const struct piece *pieces, size_t count, swarf_
     return SWARF_OK;
 }
 
-/* The points on the design that these options are beyond. */
-static swarf_status take_design(const swarf_measured *measured, const swarf_deviation_options *o, swarf_samples *out)
-{
-    /* an allowance is material that ought to be there: the design lies that deep in it */
-    const double error = feature_error * measured->layout.voxel;
-    const double excess = fmax(o->excess_mm + o->allowance_mm, 0) + error;
-    const double gouge = fmax(o->gouge_mm - o->allowance_mm, 0) + error;
-    swarf_samples taken = {0};
-    size_t room = 0;
-    for (size_t i = 0; i < measured->on_design.count; i++) {
-        const swarf_sample *sample = &measured->on_design.samples[i];
-        if (sample->value <= excess && sample->value >= -gouge) continue;
-        if (is_ignored(o, sample->triangle, sample->xyz)) continue;
-        const swarf_status status =
-            swarf_array_reserve((void **)&taken.samples, &room, taken.count + 1, sizeof *taken.samples);
-        if (status != SWARF_OK) {
-            free(taken.samples);
-            return status;
-        }
-        taken.samples[taken.count++] = *sample;
-    }
-    *out = taken;
-    return SWARF_OK;
-}
-
 static swarf_status gather(swarf_deviation *d, const struct piece *pieces, size_t count,
                            const swarf_deviation_options *options)
 {
     swarf_samples on_stock = {0}, on_design = {0};
     swarf_status status = join_beyond(pieces, count, &on_stock);
-    if (status == SWARF_OK) status = take_design(d->measured, options, &on_design);
+    if (status == SWARF_OK) status = swarf_find_missing(d->measured, options, &on_design);
     if (status == SWARF_OK)
         status = swarf_cluster_samples(&d->measured->layout, &on_stock, &on_design, d->measured->slots, &d->clusters,
                                        &d->cluster_count);

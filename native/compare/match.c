@@ -72,15 +72,6 @@ static swarf_status sum_leaves(void *context, size_t index)
     return SWARF_OK;
 }
 
-/* Number of a slot from its place among all of the layout. */
-static size_t slot_number(const swarf_tree_layout *layout, const int32_t at[3])
-{
-    const size_t node =
-        ((size_t)(at[0] >> 4) * (size_t)layout->count[1] + (size_t)(at[1] >> 4)) * (size_t)layout->count[2] +
-        (size_t)(at[2] >> 4);
-    return node * SWARF_NODE_SLOTS + (size_t)((at[0] & 15) << 8 | (at[1] & 15) << 4 | (at[2] & 15));
-}
-
 static void open_design(const struct matching *m, const swarf_samples *on_design)
 {
     for (size_t i = 0; i < on_design->count; i++) {
@@ -90,14 +81,14 @@ static void open_design(const struct matching *m, const swarf_samples *on_design
             const int32_t last = m->layout->count[k] * SWARF_NODE_DIM / SWARF_LEAF_DIM - 1;
             at[k] = (int32_t)fmin(fmax(voxels / SWARF_LEAF_DIM, 0), last);
         }
-        m->state[slot_number(m->layout, at)] = OPEN;
+        m->state[swarf_layout_slot(m->layout, at)] = OPEN;
     }
 }
 
 /* Settle a slot and put it on the stack, if it is neither open nor settled. */
 static void settle(const struct matching *m, const int32_t at[3], int32_t (*stack)[3], size_t *depth)
 {
-    uint8_t *state = &m->state[slot_number(m->layout, at)];
+    uint8_t *state = &m->state[swarf_layout_slot(m->layout, at)];
     if (*state != FREE) return;
     *state = 1;
     memcpy(stack[(*depth)++], at, 3 * sizeof at[0]);

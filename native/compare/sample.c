@@ -167,14 +167,13 @@ static swarf_status sample_leaves(void *context, size_t index)
     return SWARF_OK;
 }
 
-static void free_parts(swarf_samples *parts, size_t count)
+void swarf_samples_free(swarf_samples *parts, size_t count)
 {
     for (size_t i = 0; parts && i < count; i++) free(parts[i].samples);
     free(parts);
 }
 
-/* Put the parts end to end, in their order. */
-static swarf_status join_parts(const swarf_samples *parts, size_t count, swarf_samples *out)
+swarf_status swarf_samples_join(const swarf_samples *parts, size_t count, swarf_samples *out)
 {
     swarf_samples all = {0};
     size_t total = 0;
@@ -259,7 +258,7 @@ swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *
     work.parts = calloc(pieces + 1, sizeof *work.parts);
     work.starts = malloc((pieces + 1) * sizeof *work.starts);
     const swarf_status status = sample(&work, pieces, progress, from, to);
-    free_parts(work.parts, pieces);
+    swarf_samples_free(work.parts, pieces);
     free(work.starts);
     free(leaves);
     if (status == SWARF_OK)
@@ -359,9 +358,9 @@ swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *de
     if (status == SWARF_OK) status = swarf_parallel_for(pieces, sample_triangles, &work, progress, from, to);
     double total = 0;
     for (size_t i = 0; i < pieces && status == SWARF_OK; i++) total += work.area[i];
-    if (status == SWARF_OK) status = join_parts(work.parts, pieces, out);
+    if (status == SWARF_OK) status = swarf_samples_join(work.parts, pieces, out);
     if (status == SWARF_OK) *area = total;
-    free_parts(work.parts, pieces);
+    swarf_samples_free(work.parts, pieces);
     free(work.area);
     return status;
 }

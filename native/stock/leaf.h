@@ -16,6 +16,15 @@ static inline size_t swarf_layout_nodes(const swarf_tree_layout *layout)
     return (size_t)layout->count[0] * (size_t)layout->count[1] * (size_t)layout->count[2];
 }
 
+/** Number of a slot, SWARF_NODE_SLOTS to a node, from its place among all of the layout. */
+static inline size_t swarf_layout_slot(const swarf_tree_layout *layout, const int32_t at[3])
+{
+    const size_t node =
+        ((size_t)(at[0] >> 4) * (size_t)layout->count[1] + (size_t)(at[1] >> 4)) * (size_t)layout->count[2] +
+        (size_t)(at[2] >> 4);
+    return node * SWARF_NODE_SLOTS + (size_t)((at[0] & 15) << 8 | (at[1] & 15) << 4 | (at[2] & 15));
+}
+
 /** Low corner of a slot in a node whose low corner is `origin`. */
 static inline void swarf_leaf_corner(const int32_t origin[3], unsigned slot, int32_t corner[3])
 {

@@ -378,6 +378,50 @@ static void check_judging(void)
     }
 }
 
+/* A rib of the design too thin to be missed by the floor below it, on a stock without it: with tolerances within the
+ * band of the stock's field and far beyond it. */
+static void check_missing_rib(void)
+{
+    static const struct {
+        double voxel, gouge;
+        int found;
+    } cases[] = {{0.2, 0.2, 1}, {0.1, 0.2, 1}, {0.05, 0.2, 1}, {0.1, 1, 1},
+                 {0.1, 3.5, 1}, {0.1, 4.5, 0}, {0.05, 4.5, 0}};
+    shape s = {0};
+    const double hi[3] = {60, 40, -4};
+    shape_box(&s, block.lo, hi);
+    const double rib_lo[3] = {29.85, 10, -4.5}, rib_hi[3] = {30.15, 30, 0};
+    shape_box(&s, rib_lo, rib_hi);
+    const swarf_triangles triangles = shape_view(&s);
+    swarf_solid *design = NULL;
+    CHECK_OK(swarf_solid_create(&triangles, NULL, &design));
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        job j = begin("flat:d=30,l=20", cases[i].voxel);
+        for (int y = 0; y <= 40; y += 20) {
+            line(&j, SWARF_MOVE_RAPID, -20, y, 5, 1);
+            line(&j, SWARF_MOVE_FEED, -20, y, -4, 2);
+            line(&j, SWARF_MOVE_FEED, 80, y, -4, 3);
+            line(&j, SWARF_MOVE_RAPID, 80, y, 5, 4);
+        }
+        cut(&j);
+        swarf_deviation *deviation = measure(&j, design, cases[i].gouge);
+        size_t count = 0;
+        const swarf_cluster *c = swarf_deviation_clusters(deviation, &count);
+        if (!CHECK(count == (size_t)cases[i].found)) {
+            printf("voxel %g, tolerance %g: %zu\n", cases[i].voxel, cases[i].gouge, count);
+            print_clusters(deviation);
+        }
+        if (count == 1) {
+            CHECK(!c->excess && c->at_least && c->value_mm <= -cases[i].gouge && c->value_mm >= -4);
+            CHECK(c->place[2] > -4 + cases[i].gouge && fabs(c->place[0] - 30) < 0.2);
+        }
+        swarf_deviation_destroy(deviation);
+        end(&j);
+    }
+    swarf_solid_release(design);
+    shape_free(&s);
+}
+
 /* Each pixel is as far from the design as the point it shows; those that show something else have no value. */
 static void check_pixels(void)
 {
@@ -413,6 +457,7 @@ int main(void)
     check_gouge_by_a_line();
     check_missing_pocket();
     check_scallops();
+    check_missing_rib();
     check_judging();
     check_place();
     check_pixels();
