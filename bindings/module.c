@@ -74,6 +74,7 @@ static PyMethodDef module_methods[] = {
      "memory_peak()\n--\n\nPeak resident memory of this process in bytes, 0 where the system does not tell."},
     {"compare_volume", WITH_KEYWORDS(compare_volume), METH_VARARGS | METH_KEYWORDS, compare_volume_doc},
     {"measure_deviation", WITH_KEYWORDS(measure_deviation), METH_VARARGS | METH_KEYWORDS, measure_deviation_doc},
+    {"compare_overlap", WITH_KEYWORDS(compare_overlap), METH_VARARGS | METH_KEYWORDS, compare_overlap_doc},
     {"compare_place", WITH_KEYWORDS(compare_place), METH_VARARGS | METH_KEYWORDS, compare_place_doc},
     {"deviation_colours", WITH_KEYWORDS(deviation_colours), METH_VARARGS | METH_KEYWORDS, deviation_colours_doc},
     {NULL, NULL, 0, NULL},

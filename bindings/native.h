@@ -253,6 +253,8 @@ extern PyType_Spec deviation_spec;
 extern PyStructSequence_Desc cluster_desc;
 extern const char measure_deviation_doc[];
 PyObject *measure_deviation(PyObject *module, PyObject *args, PyObject *keywords);
+extern const char compare_overlap_doc[];
+PyObject *compare_overlap(PyObject *module, PyObject *args, PyObject *keywords);
 extern const char compare_place_doc[];
 PyObject *compare_place(PyObject *module, PyObject *args, PyObject *keywords);
 extern const char deviation_colours_doc[];

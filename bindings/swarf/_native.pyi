@@ -934,6 +934,10 @@ def measure_deviation(
 def compare_place(stock: Stock, design: Solid) -> str:
     """What makes it doubtful that a design belongs to a stock: another place, another unit; "" when all looks well."""
 
+def compare_overlap(stock: Stock, solid: Solid, *, progress: Progress = None) -> tuple[float, tuple[float, float, float]]:
+    """How deep (mm, 0.0: not at all) a Solid, a fixture, reaches into a stock, and where. No more than six voxels are told;
+    less than 0.35 of one, as beside edges, is none."""
+
 def deviation_colours(values: Table, rgba: Buffer, tolerance: float) -> bytes:
     """Tint shaded pixels (RGBA bytes) by their deviations, an (n, 1) table of mm: green within the tolerance, by yellow
     to red where material is left, by cyan to blue where it is missing."""

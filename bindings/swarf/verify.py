@@ -10,7 +10,7 @@ from typing import Any, Callable, Optional, Sequence
 from . import accept as accepting
 from . import loads as loading
 from . import loose, readers
-from ._native import Check, Cluster, Deviation, Mesh, Scene, Solid, Stock, compare_place, measure_deviation
+from ._native import Check, Cluster, Deviation, Mesh, Scene, Solid, Stock, compare_overlap, compare_place, measure_deviation
 from .accept import Acceptance
 from .job import Job, operation_of
 from .loads import Limits
@@ -166,7 +166,7 @@ def verify(
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits, region=region)
     found = [*findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
-             *_design_findings(solid, first, mesh), *fixture_findings(first, fixtures, clamps),
+             *_design_findings(solid, first, mesh), *fixture_findings(first, clamps),
              *_loose_findings(job, stock, first),
              *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
     made.findings = settle(found, [*job.accepted, *accept])
@@ -239,23 +239,15 @@ def _design_findings(solid: Solid, first: Stock, mesh: Mesh) -> list[Verdict]:
     return found
 
 
-def fixture_findings(first: Stock, fixtures: Sequence[Mesh], solids: Sequence[Solid]) -> list[Verdict]:
-    """Fixtures that reach into the stock before anything is cut: they stand elsewhere, or the stock does. Looked for at
-    their corners and the middles of their triangles, and at the corners of the stock's box."""
+def fixture_findings(first: Stock, solids: Sequence[Solid]) -> list[Verdict]:
+    """Fixtures that reach into the stock before anything is cut: they stand elsewhere, or the stock does."""
     found = []
-    box = first.bounding_box()
-    corners = [] if box is None else [tuple(box[i >> k & 1][k] for k in range(3)) for i in range(8)]
-    for number, (fixture, solid) in enumerate(zip(fixtures, solids), 1):
-        vertices = fixture.vertices.tolist()
-        points = vertices + [tuple(sum(vertices[index][k] for index in triangle) / 3 for k in range(3))
-                             for triangle in fixture.triangles.tolist()]
-        depths = [(-value, point) for value, point in zip(first.sample(points), points)]
-        depths += [(-value, corner) for value, corner in zip(solid.distance(corners), corners)] if corners else []
-        depth, place = max(depths, key=lambda entry: entry[0])
+    for number, solid in enumerate(solids, 1):
+        depth, place = compare_overlap(first, solid)
         if depth > 0.35 * first.voxel:
             found.append(Verdict("warning", f"fixture {number} reaches into the stock before anything is cut, at least "
                                  f"{depth:.3g} mm deep: fixture or stock are not where they should be", "fixture",
-                                 place=(place[0], place[1], place[2]), amount=depth))
+                                 place=place, amount=depth, at_least=True))
     return found
 
 

@@ -241,3 +241,23 @@ def test_a_verification_is_judged_again():
         assert judged.tolerance == (tolerance, tolerance) and judged.result is first.result
     assert any(finding.accepted for finding in judged.findings)
     assert not any(finding.accepted for finding in first.judge(0.5).findings)
+
+
+def test_fixtures_through_the_stock():
+    """None of the rod's corners is in the block, nor one of the block's in the rod."""
+    job = faced(1.0)
+    rod = swarf.verify(job, DESIGN, voxel=0.5, loads=False, fixtures=[box((-10.0, 14.0, -6.0), (50.0, 16.0, -4.0))])
+    (found,) = [found for found in rod.findings if found.kind == "fixture" and "reaches" in found.text]
+    assert 0.9 < found.amount < 1.6 and 0 < found.place[0] < 40 and 13.9 < found.place[1] < 16.1
+
+
+def test_overlap():
+    stock = swarf.Stock.box(LO, HI, 0.5)
+    for depth in (0.2, 0.5, 0.77, 1.3):  # of a rod along the face x = 40, ends far beyond the block
+        deep, place = swarf.compare_overlap(stock, swarf.Solid(box((40.0 - depth, -20.0, -8.0), (50.0, 50.0, -3.0))))
+        assert math.isclose(deep, depth, abs_tol=0.05) and place[0] > 38, depth
+    for lo, hi in (((40, -20, -8), (50, 50, -3)), ((41, 0, -8), (50, 30, -3)), ((-9, -9, 0), (50, 50, 4))):
+        deep, _ = swarf.compare_overlap(stock, swarf.Solid(box([float(v) for v in lo], [float(v) for v in hi])))
+        assert deep < 0.02
+    deep, _ = swarf.compare_overlap(stock, swarf.Solid(box((-50.0, -50.0, -50.0), (90.0, 90.0, 50.0))))
+    assert deep >= 1.49  # all of it

@@ -67,7 +67,7 @@ def _check(job, voxel_mm, doubts, report, stop, clearance_mm):
 
     stock = make_stock(job.stock, voxel=voxel_mm, progress=lambda done: report("stock", done))
     clamps = [swarf.Solid(fixture) for fixture in job.fixtures]
-    doubts += fixture_findings(stock, job.fixtures, clamps)
+    doubts += fixture_findings(stock, clamps)
     checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=clearance_mm, teeth=job.teeth, stop=stop,
                           progress=lambda done: report("cut", done))
     found = findings_of(job, checked, voxel_mm)

@@ -110,6 +110,13 @@ SWARF_API swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, co
  *  well. `size` bytes at most. */
 SWARF_API swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, char *text, size_t size);
 
+/** How deep (mm, 0: not at all) a solid - a fixture - reaches into a stock, and a voxel's centre where; no more than
+ * six voxels are told. Where faces meet it is good to a hundredth of a voxel, beside edges to 0.3: less than that is
+ * none.
+ */
+SWARF_API swarf_status swarf_compare_overlap(swarf_stock *stock, const swarf_solid *solid,
+                                             const swarf_progress *progress, double *depth, double point[3]);
+
 /** Deviations (mm, positive: material left, less an allowance) of the `count` pixels of a picture that see the stock,
  * NAN for the others. `position` has 3 doubles and `seen` a swarf_seen per pixel, as swarf_picture_buffers has them.
  * Any thread, all cores. SWARF_ERROR_ARGUMENT: NULL, an allowance that is not finite. */
