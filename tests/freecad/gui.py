@@ -50,6 +50,38 @@ def check_export(obj):
     pump(0.2)
 
 
+def check_next(document, first):
+    """The panel of a second job offers what the first one left, and how it may lie."""
+    import samples
+    from freecad.swarf_cam.app import setups, simulation
+    from freecad.swarf_cam.gui import task as panel
+
+    controller = samples.add_controller(document, 1, samples.end_mill(), CuttingEdgeHeight=20.0)
+    across = samples.add_operation(document, "Across", controller, "G0 X15 Y-5 Z-3", "G1 Y25 F10")
+    job = samples.make_job(document, [across], [controller], design=False)
+    document.recompute()
+    opened = panel.show_panel(job)
+    assert opened.stock.source.count() == 2 and not opened.stock.lie.isEnabled()
+    opened.stock.source.setCurrentIndex(1)
+    opened.stock.lie.setCurrentIndex(opened.stock.lie.findData("X"))
+    pump(0.2)
+    assert opened.voxel.value() == first.VoxelSize.Value
+    screenshot("next.png")
+    opened.accept()
+    wait_for(lambda: opened.closed, "the second set-up")
+    assert setups.previous_of(job) is first
+    second, = [item for item in document.Objects if simulation.is_simulation(item) and item is not first]
+    assert second.UpToDate and abs(second.VolumeInitial.Value - first.VolumeFinal.Value) < 1
+    for hidden in (job.Stock, *job.Tools.Group, first):
+        hidden.ViewObject.Visibility = False
+    screenshot("second.png")
+    document.undo()
+    document.undo()
+    assert setups.previous_of(job) is None
+    for obj in (job, across):
+        document.removeObject(obj.Name)
+
+
 def check():
     """All of it, in the order of a user."""
     import samples
@@ -125,6 +157,7 @@ def check():
     assert obj.VolumeRemoved.Value > 1000, obj.VolumeRemoved
 
     check_export(obj)
+    check_next(document, obj)
 
     cam = "CAMWorkbench" if "CAMWorkbench" in Gui.listWorkbenches() else "PathWorkbench"
     Gui.activateWorkbench(cam)

@@ -56,6 +56,16 @@ class TestModel(unittest.TestCase):
         finally:
             model.SHAPE_TRIANGLES_MAX = limit
 
+    def test_a_solid_of_the_result_is_a_stock(self):
+        solid = model.add_shape(self.obj)
+        across = samples.add_operation(self.document, "Across", samples.add_controller(
+            self.document, 1, samples.end_mill(), CuttingEdgeHeight=20.0), "G0 X15 Y-5 Z-5", "G1 Y25 F10")
+        job = samples.make_job(self.document, [across], [across.ToolController], stock=solid.Shape, design=False)
+        self.document.recompute()
+        found = simulation.simulate(simulation.make(job, VOXEL))
+        self.assertAlmostEqual(found.VolumeInitial.Value, LEFT, delta=8)
+        self.assertAlmostEqual(found.Mesh.Volume, LEFT - 6 * (20 * 5 - 6 * 2), delta=20)
+
     def test_section(self):
         self.document.openTransaction("before")
         self.document.commitTransaction()

@@ -45,6 +45,7 @@ class TestSetUps(unittest.TestCase):
     def chain(self):
         first = self.simulate(self.top)
         simulation.set_stock(self.bottom, first, self.over)
+        self.assertEqual(simulation.default_voxel(self.bottom), VOXEL)
         return first, self.simulate(self.bottom)
 
     def test_the_second_cuts_what_the_first_left(self):

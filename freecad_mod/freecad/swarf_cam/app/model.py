@@ -126,6 +126,18 @@ def shape_of(mesh):
     return solids[0] if len(solids) == 1 else Part.makeCompound(solids)
 
 
+def add_shape(obj):
+    """A Part object with the mesh of a simulation as a solid, in one undoable step -> it: what Path can take as the
+    stock of a job. JobError as shape_of()."""
+    shape, document = shape_of(obj.Mesh), obj.Document
+    document.openTransaction("Shape")
+    made = document.addObject("Part::Feature", "Stock")
+    made.Label = "%s: %s" % (FreeCAD.Qt.translate("Swarf", "Stock"), obj.Label)
+    made.Shape = shape
+    document.commitTransaction()
+    return made
+
+
 def section(obj, point, normal):
     """Compound of the wires along which a plane cuts the mesh of a simulation; FreeCAD's exporters write it as DXF and
     SVG. JobError where it cuts nothing."""

@@ -149,7 +149,7 @@ def refresh(obj):
 def make(job, voxel_mm=None):
     """A new simulation of a job in its document, not yet run. The caller holds the transaction."""
     if voxel_mm is None:
-        voxel_mm = native.default_voxel(*job_box(job))
+        voxel_mm = default_voxel(job)
     obj = job.Document.addObject("Mesh::FeaturePython", "Simulation")
     Simulation(obj)
     obj.Label = "%s: %s" % (FreeCAD.Qt.translate("Swarf", "Simulation"), job.Label)
@@ -157,6 +157,15 @@ def make(job, voxel_mm=None):
     obj.Job = job
     attach_view(obj)
     return obj
+
+
+def default_voxel(job):
+    """Voxel size that a job is simulated with where nobody says, mm: that of the set-up before, whose voxels can be kept
+    as they are. JobError when there is no stock."""
+    previous = setups.previous_of(job)
+    if previous is not None and previous.VoxelSize.Value > 0:
+        return previous.VoxelSize.Value
+    return native.default_voxel(*job_box(job))
 
 
 def job_box(job):

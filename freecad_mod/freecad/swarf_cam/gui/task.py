@@ -105,7 +105,8 @@ class SimulationPanel:
         self.voxel.setRange(10.0 ** -VOXEL_DECIMALS, VOXEL_MAX_MM)
         self.voxel.setSingleStep(0.01)
         self.voxel.setSuffix(" mm")
-        self.voxel.setValue(obj.VoxelSize.Value if obj else native.default_voxel(*simulation.job_box(job)))
+        self.voxel.setValue(obj.VoxelSize.Value if obj else simulation.default_voxel(job))
+        self.stock.source.currentIndexChanged.connect(self.take_voxel)
         layout.addRow(translate("Swarf", "Voxel size"), self.voxel)
         self.estimate = QtWidgets.QLabel()
         self.estimate.setWordWrap(True)
@@ -119,6 +120,11 @@ class SimulationPanel:
         layout.addRow(self.message)
         self.voxel.valueChanged.connect(self.show_estimate)
         self.show_estimate()
+
+    def take_voxel(self, *_):
+        """That of the set-up before: its voxels can be kept as they are."""
+        if self.stock.chosen is not None:
+            self.voxel.setValue(self.stock.chosen.VoxelSize.Value)
 
     def show_estimate(self, *_):
         """What the chosen size will cost."""
