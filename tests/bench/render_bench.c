@@ -3,7 +3,12 @@
  *
  * PROGRAM is bear or cameo (see shared data); N the voxels along the longest edge of the stock. Pictures of WIDTH x
  * 9/16 WIDTH pixels (default 1280 and 1920), one ray each, shaded, from the two cameras of the prototype this is
- * measured against; the minimum and median of nine. "update" is taking over 20 more moves, "scene" making the scene.
+ * measured against; the minimum and median of nine.
+ *
+ * The first line tells of the scene: "scene" making it, "update" taking over 20 more moves, "moves" from that batch of
+ * moves to the new picture, cutting included. The last one is about 1280 x 720 pixels and the way a viewer draws:
+ * "orbit", frames per second and the slowest of them once the eye goes round within a budget of time; then "sharp",
+ * from stopping to a still with exact edges, antialiased; "still" the same with open sky.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,6 +20,11 @@
 #include "test.h"
 
 enum { RUNS = 9 };
+
+/* An orbit: frames of a turn, after those from which the pictures learn what a ray costs; 20 of them a second leave
+ * some time to the viewer. */
+enum { ORBIT_FRAMES = 60, ORBIT_FIRST = 5, ORBIT_WIDTH = 1280, ORBIT_HEIGHT = 720 };
+static const double orbit_budget_ms = 40;
 
 static int ascending(const void *a, const void *b)
 {
@@ -77,6 +87,76 @@ static void time_pictures(swarf_scene *scene, const bench_job *job, int resoluti
     free(rgba);
 }
 
+static swarf_picture_options viewer_options(void)
+{
+    swarf_picture_options options = swarf_picture_options_default();
+    options.width = ORBIT_WIDTH;
+    options.height = ORBIT_HEIGHT;
+    return options;
+}
+
+static double time_picture(swarf_scene *scene, const swarf_camera *camera, const swarf_picture_options *options,
+                           uint8_t *rgba)
+{
+    const double started = bench_now();
+    bench_must(swarf_scene_picture(scene, camera, options, NULL, rgba));
+    return bench_now() - started;
+}
+
+static void time_viewer(swarf_scene *scene, const bench_job *job, int resolution)
+{
+    swarf_picture_options options = viewer_options();
+    uint8_t *rgba = malloc((size_t)4 * ORBIT_WIDTH * ORBIT_HEIGHT);
+    if (!rgba) exit(2);
+    options.samples = 1;
+    options.exact = options.edges = options.occlusion = 0;
+    options.budget_ms = orbit_budget_ms;
+    swarf_camera camera = camera_of(job, 1);
+    const double arm[2] = {camera.eye[0] - camera.target[0], camera.eye[1] - camera.target[1]};
+    double sum = 0, slowest = 0;
+    for (int frame = -ORBIT_FIRST; frame < ORBIT_FRAMES; frame++) {
+        const double angle = 2 * 3.14159265358979323846 * frame / ORBIT_FRAMES;
+        camera.eye[0] = camera.target[0] + cos(angle) * arm[0] - sin(angle) * arm[1];
+        camera.eye[1] = camera.target[1] + sin(angle) * arm[0] + cos(angle) * arm[1];
+        const double took = time_picture(scene, &camera, &options, rgba);
+        if (frame < 0) continue;
+        sum += took;
+        slowest = fmax(slowest, took);
+    }
+    options = viewer_options();
+    options.occlusion = 0;
+    const double sharp = time_picture(scene, &camera, &options, rgba);
+    options.occlusion = 1;
+    const double still = time_picture(scene, &camera, &options, rgba);
+    printf("{\"program\": \"%s\", \"resolution\": %d, \"threads\": %d, \"orbit_fps\": %.1f, \"slowest_ms\": %.1f, "
+           "\"sharp_ms\": %.1f, \"still_ms\": %.1f}\n",
+           job->name, resolution, swarf_threads(), ORBIT_FRAMES / sum, 1e3 * slowest, 1e3 * sharp, 1e3 * still);
+    const char *keep = getenv("SWARF_BENCH_PICTURES");
+    if (keep) {
+        char path[2048];
+        snprintf(path, sizeof path, "%s/%s-%d-still.png", keep, job->name, resolution);
+        bench_must(swarf_picture_write(path, rgba, ORBIT_WIDTH, ORBIT_HEIGHT));
+    }
+    free(rgba);
+}
+
+/* The exact surface of all moves of the job, whose stock is not cut yet. */
+static swarf_surface *make_surface(const bench_job *job, swarf_stock *stock, swarf_cutter *cutter, size_t *moves)
+{
+    swarf_program *program = bench_job_program(job);
+    const size_t sections = swarf_program_section_count(program);
+    swarf_tool *tools = calloc(sections + 1, sizeof *tools);
+    swarf_surface *surface = NULL;
+    if (!tools) exit(2);
+    for (size_t i = 0; i < sections; i++)
+        tools[i] = (swarf_tool){.number = swarf_program_sections(program)[i].tool, .cutter = cutter};
+    bench_must(swarf_surface_create(stock, program, tools, sections, NULL, &surface));
+    *moves = swarf_program_move_count(program);
+    free(tools);
+    swarf_program_release(program);
+    return surface;
+}
+
 int main(int count, char **argument)
 {
     const bench_job *job = count > 3 ? bench_job_find(argument[1]) : NULL;
@@ -89,13 +169,15 @@ int main(int count, char **argument)
     swarf_cutter *cutter = NULL;
     swarf_stock *stock = NULL;
     swarf_scene *scene = NULL;
-    size_t paths_count;
+    swarf_surface *surface = NULL;
+    size_t paths_count, moves;
     bench_must(swarf_cutter_parse(job->cutter, &cutter));
     swarf_path *paths = bench_job_paths(job, &paths_count);
     const size_t held = paths_count > LAST ? LAST : 0;
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = bench_job_voxel(job, resolution);
     bench_must(swarf_stock_create_box(&job->box, &options, &stock));
+    surface = make_surface(job, stock, cutter, &moves);
     bench_must(swarf_stock_cut(stock, cutter, paths, paths_count - held, NULL));
     bench_must(swarf_threads_set(atoi(argument[3])));
     const double t0 = bench_now();
@@ -105,14 +187,26 @@ int main(int count, char **argument)
     const double t2 = bench_now();
     bench_must(swarf_scene_update(scene));
     const double t3 = bench_now();
+    swarf_picture_options picture = viewer_options();
+    picture.samples = 1;
+    picture.edges = picture.occlusion = 0;
+    const swarf_camera camera = camera_of(job, 1);
+    uint8_t *rgba = malloc((size_t)4 * ORBIT_WIDTH * ORBIT_HEIGHT);
+    if (!rgba) return 2;
+    const double picture_s = time_picture(scene, &camera, &picture, rgba);
+    free(rgba);
     printf("{\"program\": \"%s\", \"resolution\": %d, \"threads\": %d, \"scene_ms\": %.3f, \"cut_ms\": %.3f, "
-           "\"update_ms\": %.3f}\n",
-           job->name, resolution, swarf_threads(), 1e3 * (t1 - t0), 1e3 * (t2 - t1), 1e3 * (t3 - t2));
+           "\"update_ms\": %.3f, \"moves_ms\": %.3f}\n",
+           job->name, resolution, swarf_threads(), 1e3 * (t1 - t0), 1e3 * (t2 - t1), 1e3 * (t3 - t2),
+           1e3 * (t3 - t1 + picture_s));
     for (int i = 4; i < count; i++) time_pictures(scene, job, resolution, atoi(argument[i]));
     if (count == 4) {
         time_pictures(scene, job, resolution, 1280);
         time_pictures(scene, job, resolution, 1920);
     }
+    bench_must(swarf_scene_set_surface(scene, surface, moves));
+    time_viewer(scene, job, resolution);
+    swarf_surface_release(surface);
     swarf_scene_destroy(scene);
     swarf_stock_destroy(stock);
     swarf_cutter_release(cutter);
