@@ -267,9 +267,10 @@ static void keep_keyframe(swarf_history *history)
         history->cut_slots = 0;
         return;
     }
+    if (!is_stop(history, history->at)) return;
     size_t leaves, bytes;
     swarf_tree_size(history->stock->tree, &leaves, &bytes);
-    if (!is_stop(history, history->at) || history->cut_slots < history->spacing * leaves) return;
+    if (history->cut_slots < history->spacing * leaves) return;
     if (history->keyframe_bytes + bytes > history->limit / 2) {
         for (size_t i = 0; i < history->keyframe_count; i++) drop_keyframe(history, i); /* every other one */
         history->spacing *= 2;
