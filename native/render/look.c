@@ -219,6 +219,16 @@ void swarf_look_through(const swarf_look *look, const swarf_places places[], int
     }
 }
 
+void swarf_look_trace(const swarf_look *look, const swarf_places places[], int count, swarf_rays rays[])
+{
+    unsigned inside[SWARF_GROUP];
+    for (int i = 0; i < count; i++) {
+        swarf_ray_kernel_current()->aim(&look->source, places[i].x, places[i].y, &rays[i]);
+        rays[i].active = (1u << places[i].count) - 1;
+    }
+    swarf_scene_trace(look->scene, rays, inside, count);
+}
+
 void swarf_look_blocked(const swarf_look *look, swarf_rays rays[], unsigned blocked[], int count)
 {
     double skipped[SWARF_PACKET];

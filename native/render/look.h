@@ -50,6 +50,9 @@ typedef struct swarf_places {
  *  threads at once. */
 void swarf_look_through(const swarf_look *look, const swarf_places places[], int count, swarf_sight *const out[]);
 
+/** Send the rays through `count` <= SWARF_GROUP packets of places to the stock alone. */
+void swarf_look_trace(const swarf_look *look, const swarf_places places[], int count, swarf_rays rays[]);
+
 /** Whether the active rays of `count` <= SWARF_GROUP packets, which start at surfaces, meet something within their
  *  reach: bits of them in blocked[i]. */
 void swarf_look_blocked(const swarf_look *look, swarf_rays rays[], unsigned blocked[], int count);

@@ -17,64 +17,56 @@
 
 enum { PACKET_EDGE = 4, GROUP_EDGE = 2, PIXELS_MAX = 16384, SAMPLES_MAX = 4, COARSE_MAX = 16 };
 
-/** The grid squares of a group of packets. */
+/** A square of packets: their places and grid squares. */
 typedef struct group {
+    swarf_places places[SWARF_GROUP];
     int32_t x[SWARF_GROUP][SWARF_PACKET], y[SWARF_GROUP][SWARF_PACKET];
-    int count[SWARF_GROUP];
 } group;
 
 _Static_assert(GROUP_EDGE *GROUP_EDGE == SWARF_GROUP, "a group is a square of packets");
 _Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a square are one packet");
 
-/** What is seen in the square of packets from (x0, y0), and in which grid squares. */
-static void look_group(const swarf_canvas *c, int32_t x0, int32_t y0, swarf_sight seen[SWARF_GROUP][SWARF_PACKET],
-                       group *g)
+/** The packets of the square from (x0, y0). */
+static void place_group(const swarf_canvas *c, int32_t x0, int32_t y0, group *g)
 {
-    swarf_places places[SWARF_GROUP];
-    swarf_sight *out[SWARF_GROUP];
     for (int i = 0; i < SWARF_GROUP; i++) {
-        swarf_places *p = &places[i];
+        swarf_places *p = &g->places[i];
         const int32_t left = x0 + i % GROUP_EDGE * PACKET_EDGE, top = y0 + i / GROUP_EDGE * PACKET_EDGE;
         p->count = 0;
-        for (int32_t y = top; y < top + PACKET_EDGE && y < c->height; y++)
+        for (int32_t y = top; y < top + PACKET_EDGE && y < c->height; y++) {
+            const double place = swarf_canvas_y(c, y, 0.5);
             for (int32_t x = left; x < left + PACKET_EDGE && x < c->width; x++, p->count++) {
                 p->x[p->count] = swarf_canvas_x(c, x, 0.5);
-                p->y[p->count] = swarf_canvas_y(c, y, 0.5);
+                p->y[p->count] = place;
                 g->x[i][p->count] = x;
                 g->y[i][p->count] = y;
             }
+        }
         for (unsigned idle = p->count; idle < SWARF_PACKET; idle++) p->x[idle] = p->y[idle] = 0;
-        g->count[i] = (int)p->count;
-        out[i] = seen[i];
     }
-    swarf_look_through(&c->look, places, SWARF_GROUP, out);
 }
 
 /** Keep what is seen for the passes to come. */
-static void keep_group(const swarf_canvas *c, int32_t x0, int32_t y0)
+static void keep_group(const swarf_canvas *c, const group *g)
 {
-    swarf_sight seen[SWARF_GROUP][SWARF_PACKET];
-    group g;
-    look_group(c, x0, y0, seen, &g);
+    swarf_sight seen[SWARF_GROUP][SWARF_PACKET], *out[SWARF_GROUP];
+    for (int i = 0; i < SWARF_GROUP; i++) out[i] = seen[i];
+    swarf_look_through(&c->look, g->places, SWARF_GROUP, out);
     for (int i = 0; i < SWARF_GROUP; i++)
-        for (int ray = 0; ray < g.count[i]; ray++)
-            c->middle[swarf_canvas_at(c, g.x[i][ray], g.y[i][ray])] = seen[i][ray];
+        for (unsigned ray = 0; ray < g->places[i].count; ray++)
+            c->middle[swarf_canvas_at(c, g->x[i][ray], g->y[i][ray])] = seen[i][ray];
 }
 
 /** Shade what is seen at once. */
-static void paint_group(const swarf_canvas *c, int32_t x0, int32_t y0)
+static void paint_group(const swarf_canvas *c, const group *g)
 {
-    swarf_sight seen[SWARF_GROUP][SWARF_PACKET];
-    group g;
-    look_group(c, x0, y0, seen, &g);
+    swarf_rays rays[SWARF_GROUP];
+    swarf_look_trace(&c->look, g->places, SWARF_GROUP, rays);
     for (int i = 0; i < SWARF_GROUP; i++) {
-        swarf_spot spots[SWARF_PACKET];
         float colour[SWARF_PACKET][4];
-        for (int ray = 0; ray < g.count[i]; ray++)
-            spots[ray] = swarf_canvas_spot(c, g.x[i][ray], g.y[i][ray], 0.5, &seen[i][ray]);
-        swarf_shade(&c->shading, spots, g.count[i], colour);
-        for (int ray = 0; ray < g.count[i]; ray++)
-            memcpy(c->colour[swarf_canvas_at(c, g.x[i][ray], g.y[i][ray])], colour[ray], sizeof colour[ray]);
+        swarf_shade_rays(&c->shading, &rays[i], &g->places[i], colour);
+        for (unsigned ray = 0; ray < g->places[i].count; ray++)
+            memcpy(c->colour[swarf_canvas_at(c, g->x[i][ray], g->y[i][ray])], colour[ray], sizeof colour[ray]);
     }
 }
 
@@ -89,9 +81,12 @@ static swarf_status look_tile(void *context, size_t index)
     const int32_t across = tiles(c->width);
     const int32_t x0 = (int32_t)index % across * SWARF_TILE, y0 = (int32_t)index / across * SWARF_TILE;
     enum { STEP = GROUP_EDGE * PACKET_EDGE };
+    group g;
     for (int32_t y = y0; y < y0 + SWARF_TILE && y < c->height; y += STEP)
-        for (int32_t x = x0; x < x0 + SWARF_TILE && x < c->width; x += STEP)
-            (c->middle ? keep_group : paint_group)(c, x, y);
+        for (int32_t x = x0; x < x0 + SWARF_TILE && x < c->width; x += STEP) {
+            place_group(c, x, y, &g);
+            (c->middle ? keep_group : paint_group)(c, &g);
+        }
     return SWARF_OK;
 }
 
@@ -263,12 +258,14 @@ static int32_t choose_coarse(const swarf_scene *scene, const swarf_picture_optio
 }
 
 /** Whether a picture is nothing but the colours of one ray each. */
-static int is_plain(const swarf_scene *scene, const swarf_picture_options *o, const swarf_picture_buffers *out)
+static int is_plain(const swarf_scene *scene, const swarf_shading *shading, const swarf_picture_buffers *out)
 {
     size_t moves;
+    const swarf_picture_options *o = shading->options;
     const int passes = o->samples > 1 || o->edges || o->occlusion || o->shadow || o->path || o->outline ||
                        o->axes_mm > 0 || (o->exact && swarf_scene_surface(scene, &moves));
-    return !passes && !out->depth && !out->normal && !out->position && !out->move && !out->seen;
+    return !passes && swarf_shade_is_uniform(shading) && !out->depth && !out->normal && !out->position && !out->move &&
+           !out->seen;
 }
 
 /** With the scene entered. */
@@ -283,7 +280,7 @@ static swarf_status render(swarf_scene *scene, const swarf_camera *camera, swarf
     SWARF_TRY(swarf_look_begin(scene, camera, options, c->height, &c->look));
     SWARF_TRY(swarf_shading_make(&c->look, options, &c->shading));
     const size_t squares = (size_t)c->width * (size_t)c->height;
-    const size_t middles = is_plain(scene, options, out) ? 0 : squares;
+    const size_t middles = is_plain(scene, &c->shading, out) ? 0 : squares;
     void *scratch = swarf_scene_scratch(scene, squares * sizeof *c->colour + middles * sizeof *c->middle);
     c->colour = scratch;
     c->middle = middles ? (swarf_sight *)(void *)(c->colour + squares) : NULL;

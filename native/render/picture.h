@@ -45,9 +45,6 @@ static inline size_t swarf_canvas_at(const swarf_canvas *c, int32_t x, int32_t y
     return (size_t)y * (size_t)c->width + (size_t)x;
 }
 
-/** What there is to shade of a sight in square (x, y), at the part of its height. */
-swarf_spot swarf_canvas_spot(const swarf_canvas *canvas, int32_t x, int32_t y, double part_y, const swarf_sight *sight);
-
 /** Fill `sky` and `sun` as the options ask. */
 swarf_status swarf_canvas_light(swarf_canvas *canvas, const swarf_progress *progress, double from, double to);
 

@@ -101,7 +101,8 @@ static void draw_edge(float colour[4], float strength)
     colour[3] = (1 - part) * colour[3] + part;
 }
 
-swarf_spot swarf_canvas_spot(const swarf_canvas *c, int32_t x, int32_t y, double part_y, const swarf_sight *sight)
+/** What there is to shade of a sight in square (x, y), at the part of its height. */
+static swarf_spot spot_of(const swarf_canvas *c, int32_t x, int32_t y, double part_y, const swarf_sight *sight)
 {
     const size_t at = swarf_canvas_at(c, x, y);
     float value = NAN;
@@ -112,7 +113,7 @@ swarf_spot swarf_canvas_spot(const swarf_canvas *c, int32_t x, int32_t y, double
                                    (size_t)(px < width ? px : width - 1)];
     }
     /* Light is known of the middles; a sample of something else takes it from no one. */
-    const int same = (c->sky || c->sun) && sight->seen == c->middle[at].seen;
+    const int same = sight->seen == c->middle[at].seen;
     return (swarf_spot){sight, swarf_canvas_y(c, y, part_y), c->sky && same ? c->sky[at] : 1,
                         c->sun && same ? (float)c->sun[at] / 255 : 1, value};
 }
@@ -128,7 +129,7 @@ static void shade_smooth(const strip *s, size_t row, int32_t y)
     int count = 0;
     for (int32_t x = 0; x < c->width; x++) {
         if (number[x] < 0) {
-            spots[count] = swarf_canvas_spot(c, x, y, 0.5, &c->middle[swarf_canvas_at(c, x, y)]);
+            spots[count] = spot_of(c, x, y, 0.5, &c->middle[swarf_canvas_at(c, x, y)]);
             place[count++] = x;
         }
         if (count < SWARF_PACKET && x + 1 < c->width) continue;
@@ -260,7 +261,7 @@ static swarf_status resolve_some(void *context, size_t index)
         float one[SWARF_PACKET][4];
         for (int32_t sub = 0; sub < n * n; sub++) {
             const int32_t sub_row = sub / n;
-            spots[sub] = swarf_canvas_spot(c, x, y, (sub_row + 0.5) / n, &sample[sub]);
+            spots[sub] = spot_of(c, x, y, (sub_row + 0.5) / n, &sample[sub]);
         }
         swarf_shade(&c->shading, spots, n * n, one);
         memset(sum, 0, sizeof *c->colour);

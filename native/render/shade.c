@@ -208,6 +208,34 @@ void swarf_shade(const swarf_shading *shading, const swarf_spot spots[], int cou
     }
 }
 
+int swarf_shade_is_uniform(const swarf_shading *shading)
+{
+    const swarf_look *look = shading->look;
+    return shading->options->colouring == SWARF_COLOURING_MATERIAL && !shading->options->selected_line &&
+           !look->cutter && look->section_count == 0 && !swarf_scene_fixtures(look->scene);
+}
+
+void swarf_shade_rays(const swarf_shading *shading, const swarf_rays *rays, const swarf_places *places, float (*out)[4])
+{
+    swarf_tones tones;
+    float lit[3][SWARF_PACKET];
+    memcpy(tones.normal, rays->normal, sizeof tones.normal);
+    memcpy(tones.light, shading->light, sizeof tones.light);
+    for (int ray = 0; ray < SWARF_PACKET; ray++) {
+        for (int channel = 0; channel < 3; channel++) tones.base[channel][ray] = shading->options->colour[channel];
+        tones.sky[ray] = tones.sun[ray] = 1;
+    }
+    if (rays->hit) swarf_ray_kernel_current()->shade(&tones, lit);
+    for (unsigned ray = 0; ray < places->count; ray++) {
+        if (!(rays->hit >> ray & 1)) {
+            backdrop(shading->options, (float)(0.5 + 0.5 * places->y[ray]), out[ray]);
+            continue;
+        }
+        for (int channel = 0; channel < 3; channel++) out[ray][channel] = lit[channel][ray];
+        out[ray][3] = 1;
+    }
+}
+
 void swarf_shade_encode(const float (*colour)[4], size_t count, uint8_t *out)
 {
     const swarf_ray_kernel *kernel = swarf_ray_kernel_current();

@@ -27,6 +27,13 @@ typedef struct swarf_spot {
 /** Colours of `count` <= SWARF_PACKET spots, RGBA premultiplied. */
 void swarf_shade(const swarf_shading *shading, const swarf_spot spots[], int count, float (*out)[4]);
 
+/** Whether swarf_shade_rays() can shade what this look sees: surfaces of one material and nothing else. */
+int swarf_shade_is_uniform(const swarf_shading *shading);
+/** Colours of the `count` first rays of a packet through places of a look for which that is so, without light to come:
+ *  the same as swarf_shade() makes of their sights. */
+void swarf_shade_rays(const swarf_shading *shading, const swarf_rays *rays, const swarf_places *places,
+                      float (*out)[4]);
+
 /** Colours to eight bits per channel: IEC 61966-2-1 (sRGB), not premultiplied. */
 void swarf_shade_encode(const float (*colour)[4], size_t count, uint8_t *out);
 

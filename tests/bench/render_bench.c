@@ -192,7 +192,7 @@ int main(int count, char **argument)
     picture.edges = picture.occlusion = 0;
     const swarf_camera camera = camera_of(job, 1);
     uint8_t *rgba = malloc((size_t)4 * ORBIT_WIDTH * ORBIT_HEIGHT);
-    if (!rgba) return 2;
+    if (!rgba) exit(2);
     const double picture_s = time_picture(scene, &camera, &picture, rgba);
     free(rgba);
     printf("{\"program\": \"%s\", \"resolution\": %d, \"threads\": %d, \"scene_ms\": %.3f, \"cut_ms\": %.3f, "

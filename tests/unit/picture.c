@@ -62,6 +62,31 @@ static void check_face(swarf_scene *scene, const swarf_box *box)
     free(again);
 }
 
+/** Pictures of one ray a square and nothing else are made in a way of their own: the same bytes as by the way of all
+ *  others, which whoever wants to know what is seen gets. */
+static void check_plain(swarf_scene *scene, test_random *random)
+{
+    enum { WIDTH = 71, HEIGHT = 45, PIXELS = WIDTH * HEIGHT };
+    static uint8_t plain[4 * PIXELS], other[4 * PIXELS], seen[PIXELS];
+    const swarf_picture_buffers out = {.size = sizeof out, .rgba = other, .seen = seen};
+    swarf_picture_options options = swarf_picture_options_default();
+    options.width = WIDTH;
+    options.height = HEIGHT;
+    options.samples = 1;
+    options.edges = options.occlusion = 0;
+    for (int round = 0; round < 24; round++) {
+        swarf_camera camera = {.target = {20, 15, 5}, .up = {0, 0, 1}, .height_mm = 60, .fov_deg = 35};
+        for (int axis = 0; axis < 3; axis++) camera.eye[axis] = camera.target[axis] + test_random_in(random, -90, 90);
+        camera.perspective = round & 1;
+        options.coarse = 1 + round % 3;
+        if (!CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, plain)) ||
+            !CHECK_OK(swarf_scene_render(scene, &camera, &options, NULL, &out)))
+            return;
+        CHECK(memcmp(plain, other, sizeof plain) == 0);
+        CHECK(memchr(seen, SWARF_SEEN_STOCK, sizeof seen) != NULL);
+    }
+}
+
 /** Perspective and a gradient: opaque everywhere, darker from bottom to top along the rim, which shows no stock. */
 static void check_background(swarf_scene *scene, const swarf_box *box)
 {
@@ -221,6 +246,7 @@ int main(void)
     swarf_box box;
     if (stock && CHECK_OK(swarf_scene_create(stock, &scene)) && CHECK_OK(swarf_stock_box(stock, &box))) {
         check_face(scene, &box);
+        check_plain(scene, &random);
         check_background(scene, &box);
         check_refusals(scene, &box);
         check_cancel(scene, &box, &random);
