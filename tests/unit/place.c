@@ -286,7 +286,13 @@ static void check_chain(const double angle[3], int lossless)
     swarf_surface *first = NULL, *second = NULL;
     CHECK_OK(swarf_surface_create(stock, top.program, &top.tool, 1, NULL, &first));
     play(stock, &top);
+    CHECK_OK(swarf_threads_set(1));
     swarf_stock *turned = place(stock, &over, first, 0, lossless);
+    CHECK_OK(swarf_threads_set(3));
+    swarf_stock *again = place(stock, &over, first, 0, lossless);
+    CHECK(hash_of(again) == hash_of(turned));
+    swarf_stock_destroy(again);
+    CHECK_OK(swarf_threads_set(0));
     double middle[3] = {10, 6, -6};
     swarf_placement_point(&over, middle, middle);
     const double way[2] = {cos(1.1), sin(1.1)}, depth = middle[2] - 1.5; /* into what was the underside */
