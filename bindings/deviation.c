@@ -476,6 +476,20 @@ PyObject *compare_overlap(PyObject *module, PyObject *args, PyObject *keywords)
     return Py_BuildValue("d(ddd)", depth, point[0], point[1], point[2]);
 }
 
+const char picture_colour_doc[] = "picture_colour(number)\n--\n\n"
+                                  "Linear RGB, 0 .. 1, of an operation (by its index) or a tool (by its number) in "
+                                  "pictures that are coloured by them.";
+
+PyObject *picture_colour(PyObject *Py_UNUSED(module), PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"number", NULL};
+    int number;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "i:picture_colour", names, &number)) return NULL;
+    float colour[3];
+    swarf_picture_colour(number, colour);
+    return Py_BuildValue("(ddd)", (double)colour[0], (double)colour[1], (double)colour[2]);
+}
+
 const char deviation_colours_doc[] =
     "deviation_colours(values, rgba, tolerance)\n--\n\n"
     "Tint shaded pixels (RGBA bytes) by their deviations, an (n, 1) table of mm -> bytes: green within the tolerance,\n"

@@ -76,6 +76,7 @@ static PyMethodDef module_methods[] = {
     {"measure_deviation", WITH_KEYWORDS(measure_deviation), METH_VARARGS | METH_KEYWORDS, measure_deviation_doc},
     {"compare_overlap", WITH_KEYWORDS(compare_overlap), METH_VARARGS | METH_KEYWORDS, compare_overlap_doc},
     {"compare_place", WITH_KEYWORDS(compare_place), METH_VARARGS | METH_KEYWORDS, compare_place_doc},
+    {"picture_colour", WITH_KEYWORDS(picture_colour), METH_VARARGS | METH_KEYWORDS, picture_colour_doc},
     {"deviation_colours", WITH_KEYWORDS(deviation_colours), METH_VARARGS | METH_KEYWORDS, deviation_colours_doc},
     {NULL, NULL, 0, NULL},
 };

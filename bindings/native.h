@@ -257,6 +257,8 @@ extern const char compare_overlap_doc[];
 PyObject *compare_overlap(PyObject *module, PyObject *args, PyObject *keywords);
 extern const char compare_place_doc[];
 PyObject *compare_place(PyObject *module, PyObject *args, PyObject *keywords);
+extern const char picture_colour_doc[];
+PyObject *picture_colour(PyObject *module, PyObject *args, PyObject *keywords);
 extern const char deviation_colours_doc[];
 PyObject *deviation_colours(PyObject *module, PyObject *args, PyObject *keywords);
 

@@ -49,6 +49,7 @@ from ._native import (
     isa,
     measure_deviation,
     memory_peak,
+    picture_colour,
     set_threads,
     threads,
     version,
@@ -65,5 +66,5 @@ __all__ = [
     "Deviation", "Error", "Finding", "FormatError", "GeometryError", "Held", "History", "Job", "Lump", "Mesh", "Pick",
     "Picture", "Program", "Result", "Scene", "Shell", "Simulation", "Solid", "Stock", "Surface", "Verification",
     "compare_overlap", "compare_place", "compare_volume", "deviation_colours", "isa", "measure_deviation", "memory_peak",
-    "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
+    "picture_colour", "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
 ]

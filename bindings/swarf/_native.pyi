@@ -938,6 +938,9 @@ def compare_overlap(stock: Stock, solid: Solid, *, progress: Progress = None) ->
     """How deep (mm, 0.0: not at all) a Solid, a fixture, reaches into a stock, and where. No more than six voxels are told;
     less than 0.35 of one, as beside edges, is none."""
 
+def picture_colour(number: int) -> tuple[float, float, float]:
+    """Linear RGB, 0 .. 1, of an operation (by its index) or a tool (by its number) in pictures that are coloured by them."""
+
 def deviation_colours(values: Table, rgba: Buffer, tolerance: float) -> bytes:
     """Tint shaded pixels (RGBA bytes) by their deviations, an (n, 1) table of mm: green within the tolerance, by yellow
     to red where material is left, by cyan to blue where it is missing."""

@@ -3,6 +3,7 @@
 
 import os
 import sys
+import shutil
 import tempfile
 
 import FreeCAD
@@ -188,6 +189,13 @@ class Watching(PanelTest):
         screenshot("panel-dark.png")
         corner = panel.view.image().pixelColor(3, 3)
         assert corner.lightness() < 100, "the background follows a dark theme"
+        # what an operation made has the colour that it has in the list and on the time line
+        for index, point in ((1, (25, 25, -5)), (0, (60, 10, -1))):
+            x, y, _ = panel.view.camera.project(point, panel.view.aspect())
+            image = panel.view.image()
+            seen = image.pixelColor(int((x + 1) / 2 * image.width()), int((1 - y) / 2 * image.height()))
+            shown = panel.operations.topLevelItem(index).icon(0).pixmap(16, 16).toImage().pixelColor(8, 8)
+            assert abs((seen.hue() - shown.hue() + 180) % 360 - 180) < 14, (index, seen.getRgb(), shown.getRgb())
         application.setStyleSheet(style)
         panel.tools.set_colouring("material")
         panel.setFloating(False)
@@ -206,6 +214,7 @@ class Watching(PanelTest):
         german.raise_()
         pump(1.0)
         screenshot("panel-german.png")
+        assert german.width() < 800, "the dock takes too much of a small screen: %d" % german.width()
         german.close()
         wait_for(lambda: german.opening.ended, "the second panel's end")
         Gui.getMainWindow().removeDockWidget(german)
@@ -346,6 +355,15 @@ class Watching(PanelTest):
             wait_for(lambda: not panel.banner.working, "writing the animation")
             frames = [QtGui.QImage(os.path.join(folder, "frame-%05d.png" % number)) for number in range(4)]
             assert differing(frames[0], frames[3]) > 0.02
+            assert os.path.exists(os.path.join(folder, "swarf.mp4")) == (shutil.which("ffmpeg") is not None)
+            assert folder in panel.banner.text.text(), panel.banner.text.text()
+            panel.files.save_animation(folder, 500, (320, 240))
+            wait_for(lambda: panel.banner.bar.value() > 5, "some frames")
+            screenshot("panel-animation.png")
+            panel.banner.action.click()
+            wait_for(lambda: not panel.banner.working, "breaking off the animation")
+            assert "ancelled" in panel.banner.text.text()
+        self.settle(panel.transport.end)
         undo = document.UndoCount
         panel.files.keep_result()
         wait_for(lambda: not panel.files.keeper.running, "the result")

@@ -120,6 +120,39 @@ class Verifying(PanelTest):
         assert not panel.checking.outcome.stopped, "nothing collides: there is nothing to stop at"
         page.stop.setChecked(False)
 
+    def comparing(self):
+        """The stock, the model, one over the other."""
+        panel, compared = self.panel, self.panel.tools.compared
+        panel.player.seek(0)
+        key(panel.view, QtCore.Qt.Key_0, "0")
+        pump(0.5)
+        pictures = {}
+        for name in ("both", "design", "stock"):
+            compared.setCurrentIndex(compared.findData(name))
+            self.redrawn()
+            pictures[name] = self.image()
+            screenshot("panel-shown-%s.png" % name)
+        assert min(differing(pictures[a], pictures[b]) for a, b in (("both", "design"), ("both", "stock"),
+                                                                    ("design", "stock"))) > 0.1
+        compared.setCurrentIndex(compared.findData("both"))
+        panel.tools.set_colouring("deviation")
+        panel.player.seek(panel.transport.end)
+        self.redrawn()
+        screenshot("panel-shown-deviation.png")
+        assert panel.view.legend is not None
+        compared.setCurrentIndex(compared.findData("design"))
+        self.redrawn()
+        assert panel.view.legend is None and panel.view.frame.values is None, "there are no deviations in this picture"
+        path = os.path.join(OUT, "design.png")
+        panel.files.save_picture(path)
+        wait_for(lambda: not panel.banner.working, "writing the picture")
+        saved = QtGui.QImage(path).convertToFormat(panel.view.image().format())
+        assert differing(saved, panel.view.image()) < 0.01, "the file shows what the panel shows"
+        panel.banner.done()
+        compared.setCurrentIndex(0)
+        panel.tools.set_colouring("material")
+        self.redrawn()
+
     def fixtures(self, document, job):
         """Chosen in the document, seen in the picture, found by the checks, kept, undone."""
         import Part
@@ -303,6 +336,8 @@ class Verifying(PanelTest):
         application.setStyleSheet(style)
         panel.tools.open(False)
         assert panel.tools.colouring == "material" and view.legend is None, "without a model"
+        pump(0.2)
+        assert not panel.tools.compared.isVisible()
         panel.tools.open(True)
         panel.tools.tolerance.setValue(self.settings.TOLERANCE_MM)
         self.checked()
@@ -316,7 +351,7 @@ def check():
     test = Verifying()
     document, job = new_job("verify")
     test.run((test.open, document, job), (test.findings,), (test.accepting, document, job), (test.stopping,),
-             (test.deviation,), (test.fixtures, document, job), (test.holders, document, job))
+             (test.deviation,), (test.comparing,), (test.fixtures, document, job), (test.holders, document, job))
 
 
 start(check)

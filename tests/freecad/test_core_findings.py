@@ -4,6 +4,7 @@
 import array
 import itertools
 import math
+import zlib
 from types import SimpleNamespace
 
 import pytest
@@ -233,3 +234,40 @@ def test_a_tinted_frame_holds_the_deviations(swarf):
         pass
     x, y, _ = camera.project((20, 5, -2), 4 / 3)
     assert watched.pick(view, x, y, len(data.moves)).deviation == pytest.approx(-1.7, abs=0.02)
+
+
+def test_design_and_both_in_the_picture(swarf, tmp_path):
+    """The design alone, half of each, the same in a file; without a design there is only the stock."""
+    from swarf_cam import session as sessions
+    from swarf_cam.core import pixels
+
+    data, _ = make(box_mesh(LO, (20.0, 20.0, 0.0)))  # the left half of the stock
+    watched = sessions.Session(data, 0.5, lambda done: False)
+    camera = swarf.Camera.view("top", watched.box, 2.0)
+
+    def frame(shown, place=0.0):
+        return watched.draw(sessions.View(camera, 160, 80, shown=shown, show_cutter=False), place, None)
+
+    def pixel(image, share):
+        at = 4 * (40 * 160 + int(share * 160))
+        return tuple(image.rgba[at:at + 3])
+    stock, design, both = (frame(shown) for shown in (sessions.STOCK, sessions.DESIGN, sessions.BOTH))
+    background = pixel(stock, 0.02)
+    assert pixel(stock, 0.7) != background and pixel(design, 0.7) == background and pixel(design, 0.3) != background
+    assert math.isinf(design.depth[40, 112]) and math.isfinite(both.depth[40, 112])
+    for share in (0.02, 0.3, 0.7):
+        halves = [(a + b) / 2 for a, b in zip(pixel(stock, share), pixel(design, share))]
+        assert all(abs(a - b) <= 0.5 for a, b in zip(pixel(both, share), halves))
+    path = str(tmp_path / "both.png")
+    watched.write_png(path, sessions.View(camera, 160, 80, shown=sessions.BOTH, show_cutter=False), 0.0)
+    data = (tmp_path / "both.png").read_bytes()
+    size = int.from_bytes(data[33:37], "big")
+    assert data[:8] == b"\x89PNG\r\n\x1a\n" and data[37:41] == b"IDAT"
+    rows = zlib.decompress(data[41:41 + size])
+    assert b"".join(rows[row * 641 + 1:(row + 1) * 641] for row in range(80)) == both.rgba
+    view = sessions.View(camera, 160, 80, shown=sessions.DESIGN)
+    assert watched.pick(view, 0.0, 0.0, 0) is None, "the stock is not seen"
+    assert pixels.blend(bytes((0, 255, 1, 254)), bytes((255, 255, 2, 255))) == bytes((127, 255, 1, 254))
+    bare = sessions.Session(make()[0], 0.5, lambda done: False)
+    view = sessions.View(camera, 160, 80, shown=sessions.BOTH, show_cutter=False)
+    assert bare.draw(view, 0.0, None).rgba == stock.rgba

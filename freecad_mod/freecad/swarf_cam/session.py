@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from . import native
-from .core import moves
+from .core import moves, pixels
 from .core.clock import Clock
 from .core.listing import Listing
 from .core.playback import Playback
@@ -37,6 +37,13 @@ TINTED_MATERIAL = (0.8, 0.8, 0.8)
 OPEN_SHARE = 0.3
 
 
+# What of stock and design a picture shows.
+STOCK, DESIGN, BOTH = "stock", "design", "both"
+
+# The design is told from the stock by its colour, linear.
+DESIGN_COLOUR = (0.20, 0.42, 0.72)
+
+
 @dataclass(frozen=True)
 class View:
     """What a picture shows. camera: a swarf.Camera that nobody changes any more. look: further keywords of
@@ -49,6 +56,7 @@ class View:
     show_cutter: bool = True
     show_path: bool = False
     tolerance_mm: float = 0.0  # > 0: the colours of the deviation from the design
+    shown: str = STOCK
 
 
 @dataclass
@@ -122,7 +130,7 @@ class Session:
                       STOP_TOOL_CHANGE: self.tool_changes,
                       STOP_FINDING: sorted({place for place, _, _ in self.overview.findings})}
         self._coarse = {False: 1, True: COARSE_MAX}  # of pictures with deviations, which cost most
-        self._design, self._design_is_bad = None, False
+        self._design, self._design_is_bad, self._design_scene = None, False, None
         self._scene = swarf.Scene(stock)
         self._exact = hasattr(swarf.Scene, "set_surface")  # the native module can show more than the voxels
         if self._exact:
@@ -187,6 +195,27 @@ class Session:
                                                buffers=("rgba", "depth", "position", "seen"), **look)
         return picture, picture.show_deviation(design, view.tolerance_mm, progress=progress)
 
+    def _design_picture(self, view, progress, **how):
+        """The design alone, or None when there is none that encloses anything."""
+        if self._design_scene is None:
+            if self._solid(progress) is None:
+                return None
+            self._design_scene = self._swarf.Scene(
+                self._swarf.Stock.from_mesh(self.job.design, self.voxel_mm, progress=progress))
+        look = dict(view.look, colour=DESIGN_COLOUR, colouring="material", **how)
+        return self._design_scene.render(
+            view.camera, view.width, view.height, buffers=("rgba", "depth"), progress=progress,
+            **{key: value for key, value in look.items() if key in self._keywords})
+
+    def _compose(self, view, place, progress, **how):
+        """(rgba, depth, values) of what a view shows."""
+        design = self._design_picture(view, progress, **how) if view.shown != STOCK else None
+        if design is not None and view.shown == DESIGN:
+            return bytes(design.rgba), design.depth, None
+        picture, values = self._picture(view, place, progress, **how)
+        rgba = bytes(picture.rgba)
+        return rgba if design is None else pixels.blend(rgba, bytes(design.rgba)), picture.depth, values
+
     def draw(self, view, place, budget_ms, progress=None):
         """A Frame; budget_ms None: as good as it gets."""
         tinted = view.tolerance_mm > 0
@@ -195,7 +224,7 @@ class Session:
             how = {"samples": 1}
             # coarse rays make steps of the edges' lines
             off = {"occlusion", "shadow"} | ({"edges"} if coarse > 1 else set())
-            if dict(view.look).get("colouring") == "material":  # the others are those of the moves, which it alone knows
+            if dict(view.look).get("colouring") == "material":  # the others are those of the moves: it alone knows them
                 off.add("exact")
             how.update((name, False) for name in off if name in self._keywords)
             if tinted:  # a value for each ray, not for each pixel
@@ -203,7 +232,7 @@ class Session:
             else:
                 how["coarse"] = coarse
         started = time.monotonic()
-        picture, values = self._picture(view, place, progress, **how)
+        rgba, depth, values = self._compose(view, place, progress, **how)
         if budget_ms is not None:
             took = 1000 * (time.monotonic() - started)
             if took > 1.5 * budget_ms:
@@ -211,8 +240,7 @@ class Session:
             elif took < 0.5 * budget_ms:
                 coarse = max(coarse - 1, 1)
             self._coarse[tinted] = coarse
-        return Frame(view.width, view.height, bytes(picture.rgba), picture.depth, view.camera, place,
-                     budget_ms is None, values)
+        return Frame(view.width, view.height, rgba, depth, view.camera, place, budget_ms is None, values)
 
     def tool_at(self, place):
         """Number of the tool in the spindle at a place, -1 for none."""
@@ -224,6 +252,8 @@ class Session:
 
     def pick(self, view, x, y, place):
         """Picked at a place of the picture (x to the right, y upwards, -1 .. 1), or None where nothing is."""
+        if view.shown == DESIGN:
+            return None
         found = self._current_scene().pick(view.camera, x, y, view.width, view.height,
                                            sections=dict(view.look).get("sections") or None)
         if found is None or found.seen != "stock":
@@ -254,7 +284,10 @@ class Session:
 
     def write_png(self, path, view, place, progress=None):
         """The picture as good as it gets, to a file."""
-        self._picture(view, place, progress, samples=SAMPLES)[0].write(path)
+        if view.shown == STOCK:
+            self._picture(view, place, progress, samples=SAMPLES)[0].write(path)
+        else:
+            pixels.write_png(path, view.width, view.height, self._compose(view, place, progress, samples=SAMPLES)[0])
 
     def write_frames(self, folder, view, places, progress=None, on_frame=None):
         """The stock at each of some places as frame-00000.png ... -> number of files. Goes back to where it was."""

@@ -146,7 +146,8 @@ typedef struct swarf_picture_options {
     const swarf_box *outline;     /**< its edges as lines; NULL: none */
     double axes_mm;               /**< length of x, y and z at the origin; 0: none */
 } swarf_picture_options;
-/** Linear RGB for a number (operation, tool): neighbours differ well. Any thread. */
+/** Linear RGB for a number (operation, tool): neighbours differ well, the first eight for the colour-blind too. Any
+ *  thread. */
 SWARF_API void swarf_picture_colour(int32_t number, float out[3]);
 SWARF_API swarf_picture_options swarf_picture_options_default(void);
 

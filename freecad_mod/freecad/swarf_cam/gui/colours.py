@@ -3,10 +3,9 @@
 
 import array
 
+from .. import native
 from .qt import QtGui
 
-# Told apart by most colour-blind people when neighbours in this order (after Okabe and Ito), on light and dark.
-OPERATIONS = ("#3d8fd1", "#e69f00", "#2aa876", "#cc6fa6", "#d55e00", "#7b7fd4", "#a3a129", "#50b7c9")
 FINDINGS = {"error": "#e5484d", "warning": "#e69f00", "note": "#3d8fd1"}
 
 # What deviations are tinted on in the legend: about as light as a face towards the viewer.
@@ -20,8 +19,9 @@ BACKGROUND_DARK = ((0.085, 0.095, 0.11), (0.20, 0.22, 0.25))
 
 
 def of_operation(index):
-    """QColor of an operation."""
-    return QtGui.QColor(OPERATIONS[index % len(OPERATIONS)])
+    """QColor of an operation, as pictures that are coloured by operations have it."""
+    return QtGui.QColor.fromRgbF(*(12.92 * c if c <= 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055
+                                   for c in native.load().picture_colour(index)))
 
 
 def of_deviations(swarf, values, tolerance):

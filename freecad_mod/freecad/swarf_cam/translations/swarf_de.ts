@@ -183,6 +183,10 @@
             <translation>Unter der Oberkante</translation>
         </message>
         <message>
+            <source>Both</source>
+            <translation>Beides</translation>
+        </message>
+        <message>
             <source>By age</source>
             <translation>Nach Alter</translation>
         </message>
@@ -621,6 +625,10 @@
         <message>
             <source>Show the cutter</source>
             <translation>Werkzeug zeigen</translation>
+        </message>
+        <message>
+            <source>Show the stock, the model that it should become, or one over the other</source>
+            <translation>Das Rohteil zeigen, das Modell, das es werden soll, oder beide übereinander</translation>
         </message>
         <message>
             <source>Show the tool's path</source>

@@ -37,6 +37,12 @@ QUIT_SECONDS = 10.0
 # Pixels for the picture and the lists at first.
 SIZES = (900, 150)
 
+# Width and height of the dock at first, pixels.
+DOCK_SIZE = (640, 720)
+
+# Least width of a page of the lists, pixels.
+PAGE_WIDTH = 400
+
 # The lists lie beside the picture where it still has this width, else below it; pixels, as the lists' least width.
 WIDE_PICTURE, WIDE_LISTS = 480, 460
 
@@ -97,12 +103,14 @@ class LivePanel(QtWidgets.QDockWidget):
                              (self.deviation, translate("Swarf", "Deviation")),
                              (self.setup, translate("Swarf", "Set-up")),
                              (self.accuracy, translate("Swarf", "Accuracy"))):
+            widget.setMinimumWidth(PAGE_WIDTH)  # else the widest one would hold the dock
             self.tabs.addTab(widget, text)
         self.splitter.addWidget(self.tabs)
         self.splitter.setStretchFactor(0, 1)
         self.splitter.setStretchFactor(1, 0)
         self.splitter.setSizes(SIZES)
         self.splitter.setCollapsible(0, False)
+        self.topLevelChanged.connect(self._float)
         column.addWidget(self.splitter, 1)
         self.setWidget(body)
 
@@ -244,11 +252,11 @@ class LivePanel(QtWidgets.QDockWidget):
         """session.View of what is shown, or of another size (width, height) of the picture."""
         width, height = size or self.view.pixels()
         return sessions.View(self.view.camera.copy(), width, height, self._look(), settings.flag("ShowCutter"),
-                             settings.flag("ShowPath"), self.tools.tolerance_mm)
+                             settings.flag("ShowPath"), self.tools.tolerance_mm, self.tools.shown)
 
     def wish(self):
         """Have the picture drawn as it is to be shown now."""
-        self.view.set_legend(self.tools.tolerance_mm)
+        self.view.set_legend(self.tools.tolerance_mm if self.tools.shown != sessions.DESIGN else 0.0)
         if self.session is not None and self.view.camera is not None:
             self.opening.wish(self.transport.wanted, self.current_view())
 
@@ -318,6 +326,16 @@ class LivePanel(QtWidgets.QDockWidget):
             self.splitter.setOrientation(wanted)
             self.splitter.setSizes(SIZES if wanted == QtCore.Qt.Vertical else (self.width() - lists, lists))
 
+    def _float(self, floats):
+        """Docked again it is as wide as at first: it may have been far wider than what it is docked to can spare."""
+        if not floats:
+            QtCore.QTimer.singleShot(0, self.take_width)
+
+    def take_width(self):
+        """As wide as at first, and as the tabs of this language want it."""
+        width = max(DOCK_SIZE[0], self.tabs.tabBar().sizeHint().width() + 16)
+        self.parentWidget().resizeDocks([self], [width], QtCore.Qt.Horizontal)
+
     def changeEvent(self, event):
         """The theme may have changed."""
         super().changeEvent(event)
@@ -335,8 +353,8 @@ def show(job):
     if _panel is None:
         _panel = LivePanel(main)
         main.addDockWidget(QtCore.Qt.RightDockWidgetArea, _panel)
-        _panel.resize(640, 720)
-        main.resizeDocks([_panel], [640], QtCore.Qt.Horizontal)
+        _panel.resize(*DOCK_SIZE)
+        _panel.take_width()
     _panel.show()
     _panel.raise_()
     _panel.watch(job)

@@ -2,11 +2,11 @@
 """The picture to the clipboard or a file, the machining as frames, and as a video where there is an encoder."""
 
 import os
-import shutil
-import subprocess
 
 import FreeCAD
 
+from ... import native
+from ...core import video
 from ..qt import QtCore, QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -14,31 +14,22 @@ translate = FreeCAD.Qt.translate
 # An animation: pictures a second, seconds it lasts, and its size in pixels (even numbers, for encoders).
 FRAMES_PER_SECOND, LENGTH_SECONDS, SIZE = 25, 12, (1280, 720)
 
-
-def video_command(folder, path):
-    """The encoder's command line for frames in a folder, None where there is no encoder."""
-    encoder = shutil.which("ffmpeg")
-    if encoder is None:
-        return None
-    return [encoder, "-y", "-loglevel", "error", "-framerate", str(FRAMES_PER_SECOND), "-i",
-            os.path.join(folder, "frame-%05d.png"), "-pix_fmt", "yuv420p", path]
-
-
-def animation_places(clock, count):
-    """Places that the machine reaches at equal times, the end for the last."""
-    last = max(count - 1, 1)
-    return [clock.place_at(clock.seconds * index / last) if index < last else float(len(clock))
-            for index in range(count)]
+# Drawing the frames is about this part of making a video.
+FRAMES_SHARE = 0.85
 
 
 def write_animation(session, progress, folder, view, count, report):
-    """In the engine's thread: frames into a folder, then the video -> the path that was made."""
-    session.write_frames(folder, view, animation_places(session.clock, count), progress, report)
-    path = os.path.join(folder, "swarf.mp4")
-    command = video_command(folder, path)
-    if command is None:
+    """In the engine's thread: frames into a folder, then the video where there is an encoder -> the path that was made.
+    report(fraction): how much of all is done."""
+    encoder = video.find_encoder()
+    share = FRAMES_SHARE if encoder else 1.0
+    session.write_frames(folder, view, video.places(session.clock, count), progress, lambda done: report(share * done))
+    if encoder is None:
         return folder
-    subprocess.run(command, check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    path = os.path.join(folder, "swarf.mp4")
+    if not video.encode(encoder, folder, path, FRAMES_PER_SECOND, count, progress,
+                        lambda done: report(share + (1.0 - share) * done)):
+        raise native.load().Cancelled(path)
     return path
 
 

@@ -16,6 +16,10 @@ COLOURINGS = (("material", QT_TRANSLATE_NOOP("Swarf", "Material")),
               ("deviation", QT_TRANSLATE_NOOP("Swarf", "Deviation")))
 DEVIATION = "deviation"
 
+# session.View's names of what is shown.
+SHOWN = (("stock", QT_TRANSLATE_NOOP("Swarf", "Stock")), ("design", QT_TRANSLATE_NOOP("Swarf", "Model")),
+         ("both", QT_TRANSLATE_NOOP("Swarf", "Both")))
+
 # Name of icon and tool, what it says, and the keyword that Scene.render must know.
 VIEWS = (("fit", QT_TRANSLATE_NOOP("Swarf", "Show the whole stock (F)"), None),
          ("isometric", QT_TRANSLATE_NOOP("Swarf", "Look from the corner (0); 1 to 6: the sides"), None),
@@ -61,6 +65,14 @@ class ToolRow(QtWidgets.QToolBar):
         self._colouring.currentIndexChanged.connect(self._set_colouring)
         if by_move:
             self.addWidget(self._colouring)
+        self.compared = QtWidgets.QComboBox()
+        self.compared.setObjectName("SwarfCompared")
+        self.compared.setToolTip(
+            translate("Swarf", "Show the stock, the model that it should become, or one over the other"))
+        for name, text in SHOWN:
+            self.compared.addItem(translate("Swarf", text), name)
+        self.compared.currentIndexChanged.connect(lambda *_: self.coloured.emit())
+        self._compared_shown = self.addWidget(self.compared)
         self.tolerance = QtWidgets.QDoubleSpinBox()
         self.tolerance.setObjectName("SwarfTolerance")
         self.tolerance.setToolTip(translate("Swarf", "Deviation from the model that is well"))
@@ -118,8 +130,16 @@ class ToolRow(QtWidgets.QToolBar):
         """Tolerance of the colouring by deviation, 0.0 while there is another one."""
         return settings.tolerance() if self.colouring == DEVIATION else 0.0
 
+    @property
+    def shown(self):
+        """session.View's name of what of stock and model is shown."""
+        return self.compared.currentData()
+
     def open(self, has_design):
         """A job: without a design there is no deviation to show."""
+        self._compared_shown.setVisible(has_design)
+        if not has_design:
+            self.compared.setCurrentIndex(0)
         index = self._colouring.findData(DEVIATION)
         self._colouring.model().item(index).setEnabled(has_design)
         if not has_design and self._colouring.currentIndex() == index:
