@@ -15,8 +15,9 @@
 /* A point within this many voxels of the first stock's surface lies on it. */
 static const double untouched_error = 0.05;
 
-/* More points on the design than this are not tried: it is far larger than the stock, which is said elsewhere. */
-static const double most_design_points = 2e7;
+/* More points on the design than this are not tried; fewer where it is far larger than the stock, which is said
+ * elsewhere: each that lies beyond the stock would be told of. */
+static const double most_points = 2e7, most_points_beyond = 1e5;
 
 enum { PIECE = 1024 };
 
@@ -49,6 +50,15 @@ static swarf_status measure_piece(void *context, size_t index)
     return SWARF_OK;
 }
 
+static double most_design_points(const swarf_tree_layout *layout, const swarf_solid *design)
+{
+    for (int k = 0; k < 3; k++) {
+        const double size = layout->count[k] * SWARF_NODE_DIM * layout->voxel;
+        if (design->facts.box.hi[k] - design->facts.box.lo[k] > 2 * size) return most_points_beyond;
+    }
+    return most_points;
+}
+
 static swarf_status measure(swarf_measured *m, const swarf_stock *stock, const swarf_solid *design,
                             const swarf_stock *first, const swarf_progress *progress)
 {
@@ -56,7 +66,7 @@ static swarf_status measure(swarf_measured *m, const swarf_stock *stock, const s
     SWARF_TRY(swarf_sample_stock(stock, progress, 0, 0.1, &m->on_stock));
     struct work work = {design, first, &m->on_stock, voxel};
     SWARF_TRY(swarf_parallel_for((m->on_stock.count + PIECE - 1) / PIECE, measure_piece, &work, progress, 0.1, 0.5));
-    const double spacing = fmax(voxel, sqrt(design->facts.area_mm2 / most_design_points));
+    const double spacing = fmax(voxel, sqrt(design->facts.area_mm2 / most_design_points(&m->layout, design)));
     SWARF_TRY(swarf_sample_design(stock, design, spacing, voxel, progress, 0.5, 0.6, &m->on_design, &m->design_mm2));
     /* 9 bytes for 512 voxels */
     m->slots = calloc(swarf_layout_nodes(&m->layout) * SWARF_NODE_SLOTS, sizeof *m->slots);

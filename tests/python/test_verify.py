@@ -125,6 +125,34 @@ def test_designs_that_cannot_be():
         swarf.verify(job, DESIGN, voxel=0.5, tolerance=-1)
 
 
+def test_designs_with_defects(tmp_path):
+    """What meshes of the wild have: no triangles, NaN, crossing shells, a hole, coordinates beyond all measure."""
+    job = faced(1.0)
+    with pytest.raises(swarf.GeometryError, match="no triangles"):
+        swarf.verify(job, swarf.Mesh([(0, 0, 0)], []), voxel=0.5)
+    with pytest.raises(ValueError, match="finite"):
+        swarf.Mesh([(0, 0, float("nan")), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    (tmp_path / "nan.stl").write_text("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\nvertex 1 0 0\nvertex 0 1 0\n"
+                                      "endloop\nendfacet\nendsolid\n")
+    with pytest.raises((ValueError, swarf.Error)):
+        swarf.Mesh.read(str(tmp_path / "nan.stl"))
+    # two boxes that cross are the union of both
+    left, right = box(LO, (25.0, 30.0, -1.0)), box((15.0, 0.0, -10.0), (40.0, 30.0, -1.0))
+    rows = left.triangles.tolist() + [[i + 8 for i in row] for row in right.triangles.tolist()]
+    crossing = swarf.Mesh(left.vertices.tolist() + right.vertices.tolist(), rows)
+    done = swarf.verify(job, crossing, voxel=0.5)
+    assert done.passed and [found.severity for found in done.findings] == ["note"] and "cross" in done.findings[0].text
+    # a pinhole passes, and is told
+    rows = [row for row in DESIGN.triangles.tolist() if set(row) - {4, 5, 6, 7}]
+    rows += [(4, 5, 8), (5, 9, 8), (5, 7, 9), (7, 10, 9), (7, 6, 10), (6, 8, 10), (6, 4, 8)]  # all but (8, 9, 10)
+    around = swarf.Mesh(DESIGN.vertices.tolist() + [[20, 15, -1], [20.5, 15, -1], [20, 15.5, -1]], rows)
+    hole = swarf.verify(job, around, tolerance=0.2, voxel=0.5)
+    assert hole.passed and any("not closed: 3 open edges" in found.text for found in hole.findings)
+    # a kilometre too large: said, and nothing breaks
+    huge = swarf.verify(job, box((-1e6, -1e6, -1e6), (1e6, 1e6, 1e6)), voxel=0.5, loads=False)
+    assert not huge.passed and any(found.kind == "design" for found in huge.findings)
+
+
 def test_solid():
     solid = swarf.Solid(DESIGN)
     assert solid.open_edges == 0 and solid.triangle_count == 12

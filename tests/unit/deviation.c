@@ -248,6 +248,29 @@ static void check_missing_pocket(void)
     swarf_solid_release(design);
 }
 
+/* Every point on the scallops of passes at multiples of `step` has the height that the circle has there. */
+static void check_scallop_points(const swarf_deviation *deviation, double radius, double step, double voxel)
+{
+    const float *xyz, *value;
+    const uint8_t *kind;
+    double off = 0, highest = 0;
+    size_t seen = 0;
+    const size_t count = swarf_deviation_points(deviation, &xyz, &value, &kind);
+    for (size_t i = 0; i < count; i++) {
+        const double x = xyz[3 * i], y = xyz[3 * i + 1], z = xyz[3 * i + 2];
+        if (z < -1.5 || x < 3 || x > 57 || y < 3 || y > 37) continue; /* not the sides nor what is beside them */
+        highest = fmax(highest, (double)value[i]);
+        if (kind[i]) continue;
+        const double beside = y - step * round(y / step);
+        off = fmax(off, fabs((double)value[i] - (radius - sqrt(radius * radius - beside * beside))));
+        seen++;
+    }
+    CHECK(seen > 100000);
+    CHECK_NEAR(off, 0, 0.02 * voxel + 1e-4);
+    CHECK_NEAR(highest, radius - sqrt(radius * radius - step * step / 4), 0.1 * voxel); /* of the ridges */
+    printf("scallops: %zu points off by up to %g mm, the highest at %g\n", seen, off, highest);
+}
+
 /* Ball passes side by side leave scallops of r - sqrt(r^2 - (s / 2)^2). */
 static void check_scallops(void)
 {
@@ -270,6 +293,7 @@ static void check_scallops(void)
     const swarf_deviation_sums sums = swarf_deviation_get_sums(deviation);
     CHECK(sums.passed == 1);
     CHECK(sums.most_mm < height && sums.most_mm > 0.6 * height); /* the ridge itself is sharp */
+    check_scallop_points(deviation, radius, step, 0.08);
     swarf_deviation_destroy(deviation);
     deviation = measure(&j, design, 0.02);
     CHECK(swarf_deviation_get_sums(deviation).passed == 0);
