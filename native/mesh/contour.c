@@ -56,7 +56,7 @@ static swarf_status number_vertices(contour *work)
     size_t vertices = 0;
     for (size_t i = 0; i < work->block_count; i++) {
         work->blocks[i].vertex_first = vertices;
-        vertices += work->blocks[i].vertex_count;
+        vertices += work->blocks[i].left_count;
     }
     if (vertices >= SWARF_CENTRE)
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: %zu vertices are more than a mesh can number; use larger voxels",
@@ -74,7 +74,12 @@ static swarf_status gather_one(void *context, size_t index)
 {
     const gathering *g = context;
     const contour_block *block = &g->work->blocks[index];
-    if (block->vertex_count) memcpy(g->out->xyz + 3 * block->vertex_first, block->vertices, block->vertex_count * 12);
+    float *xyz = g->out->xyz + 3 * block->vertex_first;
+    if (block->left)
+        for (uint32_t i = 0; i < block->left_count; i++)
+            memcpy(xyz + 3 * (size_t)i, block->vertices[block->left[i]].xyz, 12);
+    else if (block->vertex_count)
+        memcpy(xyz, block->vertices, block->vertex_count * 12);
     if (block->centre_count)
         memcpy(g->out->xyz + 3 * (g->vertices + block->centre_first), block->centres, block->centre_count * 12);
     for (size_t f = 0; f < block->facet_count; f++) {
@@ -98,7 +103,7 @@ static swarf_status gather(contour *work, swarf_facets *out)
         block->facet_first = facets;
         centres += block->centre_count;
         facets += block->facet_count;
-        g.vertices += block->vertex_count;
+        g.vertices += block->left_count;
     }
     swarf_facets_free(out);
     out->vertex_count = g.vertices + centres;
@@ -157,13 +162,14 @@ static uint8_t *kept_vertices(const contour *work, const swarf_facets *facets)
     size_t cells = 0;
     for (size_t i = 0; i < work->block_count; i++) {
         const contour_block *block = &work->blocks[i];
-        cells += block->vertex_count;
+        cells += block->left_count;
         uint32_t next = 0;
         for (int x = 0; x < 8; x++)
             for (uint64_t word = block->cell_mask[x]; word; word &= word - 1, next++) {
                 if (!(block->keep_mask[x] >> __builtin_ctzll(word) & 1)) continue;
                 const contour_cell *cell = &block->cells[next];
-                memset(kept + block->vertex_first + cell->first, 1, work->table.entry[cell->config][cell->flip].count);
+                for (uint32_t v = cell->first; v < cell->first + work->table.entry[cell->config][cell->flip].count; v++)
+                    kept[block->vertex_first + (block->tile ? block->tile[v] & ~SWARF_TILED : v)] = 1;
             }
     }
     memset(kept + cells, 1, facets->vertex_count - cells);
@@ -184,6 +190,7 @@ static swarf_status attempt(stage *s, int first, swarf_facet_pair **pairs, size_
     contour *work = s->work;
     const double voxel = work->layout->voxel;
     SWARF_TRY(swarf_parallel_for(work->block_count, tile_one, work, NULL, 0, 1));
+    SWARF_TRY(number_vertices(work));
     SWARF_TRY(swarf_parallel_for(work->block_count, join_one, work, first ? s->progress : NULL, 0.6, 0.7));
     SWARF_TRY(gather(work, &s->facets));
     swarf_facets_snap(&s->facets);
@@ -272,7 +279,6 @@ static swarf_status make(stage *s, swarf_mesh **out)
     SWARF_TRY(swarf_contour_blocks(work));
     SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, s->progress, 0, 0.3));
     SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, s->progress, 0.3, 0.6));
-    SWARF_TRY(number_vertices(work));
     for (size_t i = 0; i < work->block_count; i++) {
         const contour_block *block = &work->blocks[i];
         s->report.sharp_vertices += block->sharp_count;

@@ -32,6 +32,7 @@ enum { SWARF_NO_FACE = 255 };
 typedef struct contour_case {
     uint8_t count;       /* cycles, 0 .. 4 */
     uint8_t of_edge[12]; /* cycle of a crossed edge */
+    uint16_t edges[4];   /* of a cycle, a bit each */
     uint8_t
         twice_on_face; /* the face with four crossings that one cycle passes twice, SWARF_NO_FACE if there is none */
 } contour_case;
@@ -83,25 +84,28 @@ typedef struct contour_block {
     uint64_t noted_mask[8];  /* to go one further */
     int changed;             /* vertices are to be placed again */
     uint32_t vertex_count;
+    uint32_t left_count; /* vertices without those that others stand for */
     uint32_t facet_count;
     uint32_t full_count;   /* facets, had there been no tiles */
     uint32_t centre_count; /* vertices on crossings, of quadrilaterals cut into four */
     uint32_t sharp_count;  /* vertices on edges and corners of the surface */
     uint32_t exact_count;  /* vertices on the exact surface */
-    size_t vertex_first;   /* of the whole mesh */
+    size_t vertex_first;   /* of those left, of the whole mesh */
     size_t centre_first;
     size_t facet_first;
     contour_crossing *crossings;
     contour_cell *cells;
     contour_vertex *vertices;
-    uint16_t *tile; /* vertex that stands for a vertex, or SWARF_NO_TILE; NULL: there are no tiles */
+    uint16_t *tile; /* of a vertex: which of those left stands for it, and SWARF_TILED; NULL: all are left */
+    uint16_t *left; /* of those left: their vertices; NULL: all are */
     contour_vertex *centres;
     swarf_facet *facets; /* vertex numbers of the whole mesh; centres counted from 0, marked by SWARF_CENTRE */
 } contour_block;
 
 /** Marks a vertex number as a centre's while centres have no place yet. */
 #define SWARF_CENTRE 0x80000000u
-#define SWARF_NO_TILE 0xffffu
+/** Marks the vertices of a tile. */
+#define SWARF_TILED 0x8000u
 
 /** How far (as a part of the error asked for) vertices in and about a tile lie from its plane, and from each other the
  *  surface with tiles and without. Planes of neighbouring tiles have two rows of vertices in common for every four
@@ -140,8 +144,16 @@ void swarf_contour_cross_exact(const swarf_surface_near *near, const double a[3]
 void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values[SWARF_HALO * SWARF_HALO * SWARF_HALO]);
 /** The block that holds a voxel, NULL where there is none. */
 contour_block *swarf_contour_block_at(const contour *work, const int32_t ijk[3]);
-/** The crossing of an edge, which must exist. */
-const contour_crossing *swarf_contour_crossing(const contour *work, const int32_t voxel[3], int axis);
+/** The same when it is most often `near`. */
+static inline const contour_block *swarf_contour_block_near(const contour *work, const contour_block *near,
+                                                            const int32_t ijk[3])
+{
+    const int32_t away = (ijk[0] ^ near->ijk[0]) | (ijk[1] ^ near->ijk[1]) | (ijk[2] ^ near->ijk[2]);
+    return away & ~7 ? swarf_contour_block_at(work, ijk) : near;
+}
+/** The crossing of an edge, most often one of the block `near`; NULL where there is none. */
+const contour_crossing *swarf_contour_crossing(const contour *work, const contour_block *near, const int32_t voxel[3],
+                                               int axis);
 /** What the exact surface can be in the eight parts of a block, gathered when first asked for: the smaller the box, the
  *  fewer moves a point has to look at. */
 typedef struct contour_near {

@@ -194,14 +194,22 @@ swarf_status swarf_contour_cross(contour *work, contour_block *block)
 {
     float values[SWARF_HALO * SWARF_HALO * SWARF_HALO];
     swarf_contour_fetch(work, block->ijk, values);
+    uint16_t(*inside)[9] = block->inside;
+    for (int x = 0; x < 9; x++)
+        for (int y = 0; y < 9; y++) {
+            const float *row = values + ((x + 1) * SWARF_HALO + y + 1) * SWARF_HALO + 1;
+            unsigned signs = 0;
+            for (int z = 0; z < 9; z++) signs |= (unsigned)(row[z] < 0) << z;
+            inside[x][y] = (uint16_t)signs;
+        }
     uint32_t count = 0;
     for (int axis = 0; axis < 3; axis++)
         for (int x = 0; x < 8; x++) {
             uint64_t word = 0;
             for (int y = 0; y < 8; y++) {
-                const float *row = values + ((x + 1) * SWARF_HALO + y + 1) * SWARF_HALO + 1;
-                for (int z = 0; z < 8; z++)
-                    word |= (uint64_t)((row[z] < 0) != (row[z + stride[axis]] < 0)) << (y * 8 + z);
+                const unsigned own = inside[x][y];
+                const unsigned next = axis == 0 ? inside[x + 1][y] : axis == 1 ? inside[x][y + 1] : own >> 1;
+                word |= (uint64_t)((own ^ next) & 0xff) << (y * 8);
             }
             block->edge_mask[axis][x] = word;
             block->edge_rank[axis][x] = (uint16_t)count;
@@ -217,9 +225,10 @@ swarf_status swarf_contour_cross(contour *work, contour_block *block)
     return status;
 }
 
-const contour_crossing *swarf_contour_crossing(const contour *work, const int32_t voxel[3], int axis)
+const contour_crossing *swarf_contour_crossing(const contour *work, const contour_block *near, const int32_t voxel[3],
+                                               int axis)
 {
-    const contour_block *block = swarf_contour_block_at(work, voxel);
+    const contour_block *block = swarf_contour_block_near(work, near, voxel);
     const int bit = (voxel[1] & 7) * 8 + (voxel[2] & 7);
     if (!block) return NULL;
     const uint64_t word = block->edge_mask[axis][voxel[0] & 7];
@@ -236,6 +245,7 @@ void swarf_contour_free(contour *work)
         free(block->cells);
         free(block->vertices);
         free(block->tile);
+        free(block->left);
         free(block->centres);
         free(block->facets);
     }

@@ -28,6 +28,10 @@ static const double approach[] = {0.5, 0.2, 0.05, 0.01};
 static const double met_again_cosine = 0.906;
 /* In voxels: on the surface; where Newton's steps end. A tenth and a hundredth of what the mesh promises. */
 static const double on_surface = 1e-3, close_enough = 1e-4;
+/* From this far one step leads onto a face as well as many: it misses by the square of it over the face's radius. */
+static const double one_step = 0.02;
+/* After a round that moves the vertex by less only the last one follows: it alone tells whether the faces are there. */
+static const double settled = 1e-5;
 /* Vertices are moved into the cell by this much at most, so that they stay on their edge. */
 static const double allowed_outside = 0.01;
 
@@ -119,8 +123,9 @@ static int take_again(const cell *c, const face *const chosen[MOST_FACES], int c
         for (int step = 0; step < 3; step++) {
             const double value = look(c, q, &found);
             seen = is_face(chosen, count, i, &found);
-            if (!seen || fabs(value) < 0.01 * close_enough) break;
+            if (!seen) break;
             for (int k = 0; k < 3; k++) q[k] -= value * found.normal[k];
+            if (fabs(value) < one_step) break;
         }
         all &= seen;
         if (!seen) continue;
@@ -130,6 +135,11 @@ static int take_again(const cell *c, const face *const chosen[MOST_FACES], int c
     return all;
 }
 
+static double apart(const double a[3], const double b[3])
+{
+    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
 /* Where the chosen faces meet in the cell: the rank, or 1 when they do not. Planes from afar may lead out of the cell
  * though their faces meet in it, so that only the last round decides. */
 static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int count, double x[3])
@@ -137,21 +147,18 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
     contour_plane planes[MOST_FACES];
     for (int i = 0; i < count; i++) planes[i] = chosen[i]->plane;
     int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, x), seen = 0, outside = 0;
-    for (size_t round = 0; round < sizeof approach / sizeof *approach && rank > 1; round++) {
+    const size_t rounds = sizeof approach / sizeof *approach;
+    for (size_t round = 0; round < rounds && rank > 1; round++) {
         swarf_contour_clamp(x);
         const double about[3] = {x[0], x[1], x[2]};
         seen = take_again(c, chosen, count, x, approach[round], planes);
         rank = swarf_contour_meet(planes, count, about, least_eigenvalue, x);
+        if (seen && apart(x, about) < settled * settled && round + 2 < rounds) round = rounds - 2;
     }
     for (int k = 0; k < 3; k++) outside |= x[k] < -allowed_outside || x[k] > 1 + allowed_outside;
     swarf_surface_point found;
     swarf_contour_clamp(x);
     return rank > 1 && seen && !outside && fabs(look(c, x, &found)) <= on_surface ? rank : 1;
-}
-
-static double apart(const double a[3], const double b[3])
-{
-    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
 }
 
 /* Move x onto the surface within the cell; 0 when Newton's steps do not lead there. */

@@ -77,6 +77,7 @@ static void fill_case(int config, int flipped_face, contour_case *out)
         if (!(crossed >> e & 1)) continue;
         const int root = root_of(parent, e); /* the least edge of its cycle: seen first */
         out->of_edge[e] = root == e ? out->count++ : out->of_edge[root];
+        out->edges[out->of_edge[e]] |= (uint16_t)(1u << e);
     }
     out->twice_on_face = SWARF_NO_FACE;
     for (int i = 0; i < double_faces; i++) {

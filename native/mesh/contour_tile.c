@@ -78,7 +78,7 @@ static void plane_of(const tiling *t, int x, int bit, uint32_t vertex, contour_p
         int32_t voxel[3] = {corner[0] + x, corner[1] + (bit >> 3), corner[2] + (bit & 7)};
         voxel[(axis + 1) % 3] += edge >> 1 & 1;
         voxel[(axis + 2) % 3] += edge & 1;
-        const contour_crossing *crossing = swarf_contour_crossing(t->work, voxel, axis);
+        const contour_crossing *crossing = swarf_contour_crossing(t->work, t->block, voxel, axis);
         if (!crossing) continue;
         for (int k = 0; k < 3; k++) out->normal[k] = (double)crossing->normal[k];
         return;
@@ -173,6 +173,9 @@ static uint16_t find_middle(const tiling *t, const int at[3], int edge, const ce
     return chosen;
 }
 
+/* To be told from every number of a vertex. */
+enum { NO_TILE = 0xffff };
+
 static void make_tiles(const tiling *t, const int at[3], int edge)
 {
     cell_list cells;
@@ -193,12 +196,35 @@ static void make_tiles(const tiling *t, const int at[3], int edge)
     }
 }
 
+/* Number the vertices that are left. */
+static swarf_status count_left(contour_block *block)
+{
+    block->left_count = 0;
+    block->left = malloc(block->vertex_count * sizeof *block->left);
+    uint16_t *number = malloc(block->vertex_count * sizeof *number);
+    if (!block->left || !number) {
+        free(number);
+        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for tiles");
+    }
+    for (uint32_t v = 0; v < block->vertex_count; v++) {
+        if (block->tile[v] != NO_TILE && block->tile[v] != v) continue;
+        block->left[block->left_count] = (uint16_t)v;
+        number[v] = (uint16_t)block->left_count++;
+    }
+    for (uint32_t v = 0; v < block->vertex_count; v++)
+        block->tile[v] = (uint16_t)(block->tile[v] == NO_TILE ? number[v] : number[block->tile[v]] | SWARF_TILED);
+    free(number);
+    return SWARF_OK;
+}
+
 swarf_status swarf_contour_tile(contour *work, contour_block *block)
 {
     static const int corner[3] = {0, 0, 0};
     uint64_t flat = 0;
     free(block->tile);
-    block->tile = NULL;
+    free(block->left);
+    block->tile = block->left = NULL;
+    block->left_count = block->vertex_count;
     for (int x = 0; x < 8; x++) flat |= block->flat_mask[x];
     if (!(work->error_mm > 0) || !flat) return SWARF_OK;
     block->tile = malloc(block->vertex_count * sizeof *block->tile);
@@ -207,5 +233,5 @@ swarf_status swarf_contour_tile(contour *work, contour_block *block)
     const double limit = work->error_mm < 0.1 * work->layout->voxel ? work->error_mm : 0.1 * work->layout->voxel;
     const tiling t = {work, block, SWARF_TILE_FLAT * limit};
     make_tiles(&t, corner, SWARF_LEAF_DIM);
-    return SWARF_OK;
+    return count_left(block);
 }

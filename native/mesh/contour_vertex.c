@@ -75,9 +75,42 @@ static void project(const contour_polygon *polygon, double x[3])
     }
 }
 
+/* Move along an edge to where it passes the cell, if it does; through the slabs of the cell. */
+static void move_inside(const double edge[3], double x[3])
+{
+    double lo = -4, hi = 4;
+    for (int k = 0; k < 3; k++) {
+        const double slope = edge[k];
+        if (fabs(slope) < 1e-9) continue;
+        const double first = (margin - x[k]) / slope, last = (1 - margin - x[k]) / slope;
+        lo = fmax(lo, fmin(first, last));
+        hi = fmin(hi, fmax(first, last));
+    }
+    if (lo > hi) return;
+    const double along = fmin(fmax(0, lo), hi);
+    for (int k = 0; k < 3; k++) x[k] += along * edge[k];
+}
+
+/* Two planes, most of what comes, in closed form: their matrix has the eigenvalues 1 + c and 1 - c. */
+static int meet_two(const contour_plane *a, const contour_plane *b, const double about[3], double least, double out[3])
+{
+    const double *n = a->normal, *m = b->normal, c = dot(n, m);
+    if (!(1 - fabs(c) > least * (1 + fabs(c)))) return 0;
+    const double r = dot(n, a->point) - dot(n, about), s = dot(m, b->point) - dot(m, about), size = 1 - c * c;
+    double edge[3];
+    for (int k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        out[k] = about[k] + ((r - c * s) * n[k] + (s - c * r) * m[k]) / size;
+        edge[k] = (n[i] * m[j] - n[j] * m[i]) / sqrt(size);
+    }
+    move_inside(edge, out);
+    return 1;
+}
+
 int swarf_contour_meet(const contour_plane *planes, int count, const double about[3], double least, double out[3])
 {
     double a[3][3] = {{0}}, right[3] = {0}, value[3], vector[3][3];
+    if (count == 2 && meet_two(&planes[0], &planes[1], about, least, out)) return 2;
     for (int i = 0; i < count; i++) {
         const double *n = planes[i].normal;
         const double away = dot(n, planes[i].point) - dot(n, about);
@@ -91,19 +124,7 @@ int swarf_contour_meet(const contour_plane *planes, int count, const double abou
     memcpy(out, about, 3 * sizeof *out);
     for (int i = 0; i < 3 && value[i] > least * value[0] && value[i] > 0; i++, rank++)
         for (int k = 0; k < 3; k++) out[k] += dot(vector[i], right) / value[i] * vector[i][k];
-    if (rank != 2) return rank;
-    double lo = -4, hi = 4; /* along the edge, through the slabs of the cell */
-    for (int k = 0; k < 3; k++) {
-        const double slope = vector[2][k];
-        if (fabs(slope) < 1e-9) continue;
-        const double first = (margin - out[k]) / slope, last = (1 - margin - out[k]) / slope;
-        lo = fmax(lo, fmin(first, last));
-        hi = fmin(hi, fmax(first, last));
-    }
-    if (lo <= hi) {
-        const double along = fmin(fmax(0, lo), hi);
-        for (int k = 0; k < 3; k++) out[k] += along * vector[2][k];
-    }
+    if (rank == 2) move_inside(vector[2], out);
     return rank;
 }
 

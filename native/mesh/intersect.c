@@ -3,7 +3,8 @@
  *
  *   level 0: leaves; node i of level l + 1 is over nodes 2 i and 2 i + 1 of level l.
  *
- * Every facet looks for later ones whose boxes meet its own, and each such pair is decided in whole numbers. */
+ * Every leaf looks for later ones whose boxes meet its own, and each pair of their facets whose boxes meet is decided
+ * in whole numbers. */
 #include "mesh/intersect.h"
 
 #include "base/memory.h"
@@ -15,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAF = 4, LEVELS = 32, CHUNK = 4096 };
+enum { LEAF = 4, LEVELS = 32, CHUNK = 1024 };
 
 typedef struct extent {
     int32_t lo[3], hi[3];
@@ -30,6 +31,7 @@ typedef struct tree {
     const swarf_facets *facets;
     double step;
     uint32_t *order;
+    extent *own; /* of the facets in that order */
     size_t level_first[LEVELS], level_count[LEVELS];
     int levels;
     extent *boxes;
@@ -39,7 +41,10 @@ typedef struct tree {
 static double step_of(const swarf_facets *facets)
 {
     float most = 0;
-    for (size_t i = 0; i < 3 * facets->vertex_count; i++) most = fmaxf(most, fabsf(facets->xyz[i]));
+    for (size_t i = 0; i < 3 * facets->vertex_count; i++) {
+        const float size = fabsf(facets->xyz[i]);
+        most = size > most ? size : most;
+    }
     int exponent;
     frexp(most > 0 ? (double)most : 1, &exponent);
     return ldexp(1, exponent - 24);
@@ -55,9 +60,10 @@ void swarf_facets_snap(swarf_facets *facets)
 
 static void corners_of(const tree *t, uint32_t f, int32_t out[3][3])
 {
+    const double scale = 1 / t->step; /* a power of two */
     for (int k = 0; k < 3; k++)
         for (int c = 0; c < 3; c++)
-            out[k][c] = (int32_t)((double)t->facets->xyz[3 * (size_t)t->facets->facet[f].v[k] + (size_t)c] / t->step);
+            out[k][c] = (int32_t)((double)t->facets->xyz[3 * (size_t)t->facets->facet[f].v[k] + (size_t)c] * scale);
 }
 
 static extent extent_of(int32_t p[3][3])
@@ -164,15 +170,17 @@ static swarf_status build(tree *t)
         if (nodes <= 1) break;
     }
     t->boxes = malloc((total + 1) * sizeof *t->boxes);
-    if (!t->boxes) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
+    t->own = malloc((count + 1) * sizeof *t->own);
+    if (!t->boxes || !t->own)
+        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
     for (size_t i = 0; i < count; i++) {
         int32_t p[3][3];
         corners_of(t, t->order[i], p);
-        const extent e = extent_of(p);
+        t->own[i] = extent_of(p);
         if (i % LEAF == 0)
-            t->boxes[i / LEAF] = e;
+            t->boxes[i / LEAF] = t->own[i];
         else
-            widen(&t->boxes[i / LEAF], &e);
+            widen(&t->boxes[i / LEAF], &t->own[i]);
     }
     for (int level = 1; level < t->levels; level++)
         for (size_t i = 0; i < t->level_count[level]; i++) {
@@ -184,27 +192,28 @@ static swarf_status build(tree *t)
     return SWARF_OK;
 }
 
-static swarf_status look_at_leaf(const tree *t, size_t own, int32_t p[3][3], const extent *box, size_t leaf, found *out)
+static swarf_status look_at_leaf(const tree *t, size_t own, size_t leaf, found *out)
 {
-    const uint32_t f = t->order[own];
-    for (size_t i = leaf * LEAF; i < (leaf + 1) * LEAF && i < t->facets->facet_count; i++) {
-        if (i <= own) continue;
-        int32_t q[3][3];
-        const uint32_t g = t->order[i];
-        corners_of(t, g, q);
-        const extent other = extent_of(q);
-        if (apart(box, &other) || !swarf_triangles_meet(p, t->facets->facet[f].v, q, t->facets->facet[g].v)) continue;
-        SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
-        out->pairs[out->count++] = (swarf_facet_pair){f, g};
+    const size_t count = t->facets->facet_count;
+    for (size_t i = own * LEAF; i < (own + 1) * LEAF && i < count; i++) {
+        const uint32_t f = t->order[i];
+        for (size_t k = own == leaf ? i + 1 : leaf * LEAF; k < (leaf + 1) * LEAF && k < count; k++) {
+            if (apart(&t->own[i], &t->own[k])) continue;
+            int32_t p[3][3], q[3][3];
+            const uint32_t g = t->order[k];
+            corners_of(t, f, p);
+            corners_of(t, g, q);
+            if (!swarf_triangles_meet(p, t->facets->facet[f].v, q, t->facets->facet[g].v)) continue;
+            SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
+            out->pairs[out->count++] = (swarf_facet_pair){f, g};
+        }
     }
     return SWARF_OK;
 }
 
 static swarf_status look_for(const tree *t, size_t own, found *out)
 {
-    int32_t p[3][3];
-    corners_of(t, t->order[own], p);
-    const extent box = extent_of(p);
+    const extent *box = &t->boxes[own];
     struct {
         size_t node;
         int level;
@@ -216,9 +225,9 @@ static swarf_status look_for(const tree *t, size_t own, found *out)
         depth--;
         const int level = stack[depth].level;
         const size_t node = stack[depth].node;
-        if (((node + 1) << level) * LEAF <= own + 1 || apart(&box, &t->boxes[t->level_first[level] + node])) continue;
+        if (((node + 1) << level) <= own || apart(box, &t->boxes[t->level_first[level] + node])) continue;
         if (level == 0) {
-            SWARF_TRY(look_at_leaf(t, own, p, &box, node, out));
+            SWARF_TRY(look_at_leaf(t, own, node, out));
             continue;
         }
         for (size_t child = 2 * node + 2; child-- > 2 * node;)
@@ -233,7 +242,7 @@ static swarf_status look_for(const tree *t, size_t own, found *out)
 static swarf_status look_chunk(void *context, size_t index)
 {
     const tree *t = context;
-    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < t->facets->facet_count; i++)
+    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < t->level_count[0]; i++)
         SWARF_TRY(look_for(t, i, &t->chunks[index]));
     return SWARF_OK;
 }
@@ -241,7 +250,7 @@ static swarf_status look_chunk(void *context, size_t index)
 static swarf_status look_everywhere(tree *t, const swarf_progress *progress, double from, double to,
                                     swarf_facet_pair **pairs, size_t *count)
 {
-    const size_t chunks = (t->facets->facet_count + CHUNK - 1) / CHUNK;
+    const size_t chunks = (t->level_count[0] + CHUNK - 1) / CHUNK;
     t->chunks = calloc(chunks, sizeof *t->chunks);
     if (!t->chunks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     swarf_status status = swarf_parallel_for(chunks, look_chunk, t, progress, from, to);
@@ -278,6 +287,7 @@ swarf_status swarf_facets_intersect(const swarf_facets *facets, const swarf_prog
     if (status == SWARF_OK) status = look_everywhere(&t, progress, from, to, pairs, count);
     free(t.order);
     free(t.boxes);
+    free(t.own);
     free(t.chunks);
     return status;
 }

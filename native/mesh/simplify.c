@@ -27,6 +27,7 @@ enum { ERROR_STEPS = 8 };
 typedef struct job {
     swarf_facets *facets;
     const uint8_t *locked;
+    double least[3], most[3]; /* of the vertices */
     double lo[3], edge, limit;
     size_t count[3];
     int first;           /* pass at this limit */
@@ -104,21 +105,19 @@ static void free_region(simplify_region *r)
     free(r->state);
     free(r->mark);
     free(r->need);
-    free(r->v);
-    free(r->of);
-    free(r->next);
-    free(r->alive);
+    free(r->facet);
 }
 
 static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, int shared)
 {
     const size_t f = r->facet_count++;
-    swarf_facet *facet = &j->facets->facet[number];
-    r->of[f] = facet;
-    r->alive[f] = 1;
+    const swarf_facet *facet = &j->facets->facet[number];
+    simplify_facet *here = &r->facet[f];
+    *here = (simplify_facet){.global = number, .error_mm = facet->error_mm, .alive = 1};
+    memcpy(here->normal, facet->normal, sizeof here->normal);
     for (size_t k = 0; k < 3; k++) {
         const uint32_t vertex = facet->v[k];
-        r->v[3 * f + k] = SWARF_NO_VERTEX;
+        here->v[k] = SWARF_NO_VERTEX;
         if (shared && j->cube[vertex] != cube) continue;
         uint32_t own = j->local[vertex];
         if (own >= r->vertex_count || r->global[own] != vertex) { /* seen for the first time */
@@ -132,9 +131,9 @@ static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, 
                 r->xyz[3 * (size_t)own + (size_t)c] = j->facets->xyz[3 * (size_t)vertex + (size_t)c];
         }
         if (shared) r->state[own] |= SIMPLIFY_FIXED;
-        r->v[3 * f + k] = own;
-        r->next[3 * f + k] = r->head[own];
-        r->head[own] = (uint32_t)(3 * f + k);
+        here->v[k] = own;
+        here->next[k] = r->head[own];
+        r->head[own] = (uint32_t)(4 * f + k);
     }
 }
 
@@ -153,18 +152,15 @@ static swarf_status simplify_cube(void *context, size_t cube)
     r.state = malloc(vertices);
     r.mark = malloc(vertices * sizeof *r.mark);
     r.need = malloc(vertices * sizeof *r.need);
-    r.v = malloc(vertices * sizeof *r.v);
-    r.of = malloc(facets * sizeof *r.of);
-    r.next = malloc(vertices * sizeof *r.next);
-    r.alive = malloc(facets);
+    r.facet = malloc(facets * sizeof *r.facet);
     swarf_status status = SWARF_OK;
-    if (!r.xyz || !r.global || !r.head || !r.state || !r.mark || !r.need || !r.v || !r.of || !r.next || !r.alive) {
+    if (!r.xyz || !r.global || !r.head || !r.state || !r.mark || !r.need || !r.facet) {
         status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     } else {
         for (size_t i = 0; i < owned; i++) add_facet(j, &r, cube, j->owned[owned_first + i], 0);
         r.owned_count = owned;
         for (size_t i = 0; i < shared; i++) add_facet(j, &r, cube, j->shared[shared_first + i], 1);
-        j->gone[cube] = swarf_simplify_region(&r, j->limit, j->first);
+        j->gone[cube] = swarf_simplify_region(&r, j->limit, j->first, j->facets->facet);
         for (size_t i = 0; i < r.vertex_count; i++) j->settled[r.global[i]] = r.state[i] == 0;
     }
     free_region(&r);
@@ -179,29 +175,33 @@ static void drop_gone(swarf_facets *facets)
     facets->facet_count = kept;
 }
 
+static void find_bounds(job *j)
+{
+    const swarf_facets *facets = j->facets;
+    for (size_t k = 0; k < 3; k++) {
+        float least = INFINITY, most = -INFINITY;
+        for (size_t i = k; i < 3 * facets->vertex_count; i += 3) {
+            least = facets->xyz[i] < least ? facets->xyz[i] : least;
+            most = facets->xyz[i] > most ? facets->xyz[i] : most;
+        }
+        j->least[k] = (double)least;
+        j->most[k] = (double)most;
+    }
+}
+
 static void lay_out(job *j, const struct pass *pass, double voxel)
 {
-    double hi[3];
-    for (int k = 0; k < 3; k++) {
-        j->lo[k] = INFINITY;
-        hi[k] = -INFINITY;
-    }
-    for (size_t i = 0; i < j->facets->vertex_count; i++)
-        for (int k = 0; k < 3; k++) {
-            j->lo[k] = fmin(j->lo[k], (double)j->facets->xyz[3 * i + (size_t)k]);
-            hi[k] = fmax(hi[k], (double)j->facets->xyz[3 * i + (size_t)k]);
-        }
     j->edge = pass->edge * voxel;
     for (;;) {
         double cubes = 1;
         for (int k = 0; k < 3; k++) {
-            j->count[k] = (size_t)fmin((hi[k] - j->lo[k]) / j->edge + pass->shift + 1, 1e6);
+            j->count[k] = (size_t)fmin((j->most[k] - j->least[k]) / j->edge + pass->shift + 1, 1e6);
             cubes *= (double)j->count[k];
         }
         if (cubes <= most_cubes) break;
         j->edge *= 1.5;
     }
-    for (int k = 0; k < 3; k++) j->lo[k] -= pass->shift * j->edge;
+    for (int k = 0; k < 3; k++) j->lo[k] = j->least[k] - pass->shift * j->edge;
 }
 
 static swarf_status run_pass(job *j, const struct pass *pass, double voxel, const swarf_progress *progress, double from,
@@ -250,6 +250,7 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
     swarf_status status = SWARF_OK;
     if (!j.cube || !j.local || !j.settled)
         status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    find_bounds(&j);
     const int steps = budget ? ERROR_STEPS : 1;
     double at = from;
     const double part = (to - from) / (steps * PASSES);

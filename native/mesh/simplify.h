@@ -8,20 +8,27 @@
 /** Stands for a vertex of another region, and for the end of a list. */
 #define SWARF_NO_VERTEX UINT32_MAX
 
-/** A region: its own vertices, the facets that lie in it wholly (which it may change) and those that reach out of it.
- *  Only vertices whose facets all lie in the region may go. */
+/** A facet of a region, together in memory with all that is asked of it. */
+typedef struct simplify_facet {
+    uint32_t v[3];    /* the region's numbers */
+    uint32_t next[3]; /* the next corner of the same vertex */
+    uint32_t global;  /* its number in the whole mesh */
+    float error_mm;
+    int16_t normal[3];
+    uint8_t alive;
+} simplify_facet;
+
+/** A corner is named by facet * 4 + k. A region: its own vertices, the facets that lie in it wholly (which it may
+ * change) and those that reach out of it. Only vertices whose facets all lie in the region may go. */
 typedef struct simplify_region {
     double *xyz;      /* of the region's vertices */
     uint32_t *global; /* their numbers in the whole mesh */
-    uint32_t *head;   /* first corner (facet * 3 + k) of each vertex's list */
+    uint32_t *head;   /* first corner of each vertex's list */
     uint8_t *state;   /* SIMPLIFY_FIXED, SIMPLIFY_DIRTY */
     uint32_t *mark;   /* stamps of the ring being looked at */
     float *need;      /* error below which a vertex that was looked at cannot go while its ring stays */
     size_t vertex_count;
-    uint32_t *v;      /* 3 per facet, the region's numbers */
-    swarf_facet **of; /* the facet in the whole mesh */
-    uint32_t *next;   /* 3 per facet: the next corner of the same vertex */
-    uint8_t *alive;
+    simplify_facet *facet;
     size_t facet_count;
     size_t owned_count; /* the first ones lie in the region wholly */
     uint32_t stamp;
@@ -29,9 +36,10 @@ typedef struct simplify_region {
 
 enum { SIMPLIFY_FIXED = 1, SIMPLIFY_DIRTY = 2 };
 
-/** Remove vertices while the error stays below `limit` (mm), then mark the facets gone by v[0] = SWARF_NO_VERTEX.
+/** Remove vertices while the error stays below `limit` (mm), then put the facets it has wholly back to the mesh, those
+ *  gone with v[0] = SWARF_NO_VERTEX.
  *  `first`: the limit is new, so that all vertices are looked at; else only those whose state is SIMPLIFY_DIRTY.
  *  Returns how many facets went. */
-size_t swarf_simplify_region(simplify_region *region, double limit, int first);
+size_t swarf_simplify_region(simplify_region *region, double limit, int first, swarf_facet *mesh);
 
 #endif

@@ -104,7 +104,7 @@ static double where_they_pass(const ring *around, int i, int j, int k)
     return away;
 }
 
-static double normals_dot(const swarf_facet *a, const swarf_facet *b)
+static double normals_dot(const simplify_facet *a, const simplify_facet *b)
 {
     double sum = 0;
     for (int k = 0; k < 3; k++) sum += (double)a->normal[k] * b->normal[k];
@@ -133,22 +133,26 @@ static double worst_shape(const ring *around)
     return worst;
 }
 
+/* Corners after a corner of a facet. */
+static const uint8_t following[4] = {1, 2, 0, 1};
+
 /* The facets round a vertex in order; 0 when they are too many or no single ring. */
 static int look_round(simplify_region *r, uint32_t v, ring *out)
 {
     uint32_t facet[MOST], from[MOST], to[MOST], *link = &r->head[v];
     int count = 0;
     while (*link != SWARF_NO_VERTEX) {
-        const uint32_t corner = *link, f = corner / 3;
-        if (!r->alive[f]) {
-            *link = r->next[corner];
+        const uint32_t f = *link >> 2, k = *link & 3;
+        simplify_facet *here = &r->facet[f];
+        if (!here->alive) {
+            *link = here->next[k];
             continue;
         }
         if (count == MOST) return 0;
         facet[count] = f;
-        from[count] = r->v[3 * f + (corner + 1 - 3 * f) % 3];
-        to[count++] = r->v[3 * f + (corner + 2 - 3 * f) % 3];
-        link = &r->next[corner];
+        from[count] = here->v[following[k]];
+        to[count++] = here->v[following[k + 1]];
+        link = &here->next[k];
     }
     if (count < 3) return 0;
     out->count = count;
@@ -157,7 +161,7 @@ static int look_round(simplify_region *r, uint32_t v, ring *out)
     for (int i = 0, at = 0; i < count; i++) {
         out->facet[i] = facet[at];
         out->vertex[i] = from[at];
-        out->error = most_of(out->error, (double)r->of[facet[at]]->error_mm);
+        out->error = most_of(out->error, (double)r->facet[facet[at]].error_mm);
         int follow = 0;
         while (follow < count && from[follow] != to[at]) follow++;
         if (follow == count || (i < count - 1 && follow == 0)) return 0;
@@ -166,7 +170,7 @@ static int look_round(simplify_region *r, uint32_t v, ring *out)
     }
     for (int i = 0; i < count; i++) {
         const int before = i ? i - 1 : count - 1;
-        out->crease[i] = normals_dot(r->of[out->facet[before]], r->of[out->facet[i]]) < edge_cosine;
+        out->crease[i] = normals_dot(&r->facet[out->facet[before]], &r->facet[out->facet[i]]) < edge_cosine;
     }
     return 1;
 }
@@ -176,10 +180,11 @@ static int keeps_topology(const simplify_region *r, const ring *around, int j, u
 {
     const int n = around->count;
     const uint32_t u = around->vertex[j], before = around->vertex[(j + n - 1) % n], after = around->vertex[(j + 1) % n];
-    for (uint32_t corner = r->head[u]; corner != SWARF_NO_VERTEX; corner = r->next[corner]) {
-        const uint32_t f = corner / 3;
-        if (!r->alive[f]) continue;
-        const uint32_t a = r->v[3 * f + (corner + 1 - 3 * f) % 3], b = r->v[3 * f + (corner + 2 - 3 * f) % 3];
+    const simplify_facet *here;
+    for (uint32_t corner = r->head[u]; corner != SWARF_NO_VERTEX; corner = here->next[corner & 3]) {
+        here = &r->facet[corner >> 2];
+        if (!here->alive) continue;
+        const uint32_t a = here->v[following[corner & 3]], b = here->v[following[(corner & 3) + 1]];
         if (a == v || b == v) continue;
         const int a_on = a != SWARF_NO_VERTEX && r->mark[a] == r->stamp;
         const int b_on = b != SWARF_NO_VERTEX && r->mark[b] == r->stamp;
@@ -302,15 +307,16 @@ static void draw(simplify_region *r, const ring *around, int j, uint32_t v, doub
     const uint32_t u = around->vertex[j];
     for (int i = 0; i < n; i++) {
         const uint32_t f = around->facet[i];
+        simplify_facet *here = &r->facet[f];
         if (i == j || (i + 1) % n == j) {
-            r->alive[f] = 0;
+            here->alive = 0;
             continue;
         }
-        const uint32_t corner = 3 * f + (r->v[3 * f] == v ? 0u : r->v[3 * f + 1] == v ? 1u : 2u);
-        r->v[corner] = u;
-        r->next[corner] = r->head[u];
-        r->head[u] = corner;
-        r->of[f]->error_mm = (float)error;
+        const uint32_t k = here->v[0] == v ? 0 : here->v[1] == v ? 1 : 2;
+        here->v[k] = u;
+        here->next[k] = r->head[u];
+        r->head[u] = 4 * f + k;
+        here->error_mm = (float)error;
     }
     r->head[v] = SWARF_NO_VERTEX;
     for (int i = 0; i < n; i++) r->state[around->vertex[i]] |= SIMPLIFY_DIRTY;
@@ -321,7 +327,7 @@ static void measure_round(const simplify_region *r, uint32_t v, ring *around)
 {
     const int n = around->count;
     for (int i = 0; i < n; i++) {
-        const int16_t *true_normal = r->of[around->facet[i]]->normal;
+        const int16_t *true_normal = r->facet[around->facet[i]].normal;
         for (int k = 0; k < 3; k++) {
             around->at[i][k] = r->xyz[3 * (size_t)around->vertex[i] + (size_t)k] - r->xyz[3 * (size_t)v + (size_t)k];
             around->true_normal[i][k] = true_normal[k];
@@ -427,7 +433,7 @@ static size_t stride_of(size_t count)
     }
 }
 
-size_t swarf_simplify_region(simplify_region *r, double limit, int first)
+size_t swarf_simplify_region(simplify_region *r, double limit, int first, swarf_facet *mesh)
 {
     const size_t far_apart = stride_of(r->vertex_count);
     static const double steps[] = {0.1, 0.2, 0.45, 0.7, 1}; /* the first only where it is flat */
@@ -446,13 +452,15 @@ size_t swarf_simplify_region(simplify_region *r, double limit, int first)
     }
     size_t gone = 0;
     for (size_t f = 0; f < r->owned_count; f++) { /* the others are read by other threads */
-        swarf_facet *facet = r->of[f];
-        if (!r->alive[f]) {
+        const simplify_facet *here = &r->facet[f];
+        swarf_facet *facet = &mesh[here->global];
+        if (!here->alive) {
             facet->v[0] = SWARF_NO_VERTEX;
             gone++;
             continue;
         }
-        for (size_t k = 0; k < 3; k++) facet->v[k] = r->global[r->v[3 * f + k]];
+        facet->error_mm = here->error_mm;
+        for (size_t k = 0; k < 3; k++) facet->v[k] = r->global[here->v[k]];
     }
     return gone;
 }

@@ -3,8 +3,8 @@
  *
  * Each trace is looked at from the middle of the box; `raw` there changes no faster than a point moves, which bounds it
  * everywhere in the box. What cannot have a zero in the box, or lies behind another trace everywhere, is left out. The
- * rest is ordered by raw, so that a point stops looking as soon as nothing nearer can come; where raw is convex its
- * tangent in the middle tells of most traces that they are not the nearest. */
+ * rest is ordered by raw, so that a point stops looking as soon as nothing nearer can come; where raw is the least of a
+ * few convex functions, their tangents in the middle tell of most traces that they are not the nearest. */
 #include "surface/surface.h"
 
 #include "base/memory.h"
@@ -15,9 +15,9 @@
 #include <string.h>
 
 struct seen {
-    double raw;        /* from the middle of the box */
-    double tangent[3]; /* its gradient there */
-    int convex;        /* it is nowhere below that tangent */
+    double raw; /* from the middle of the box */
+    int bounds;
+    swarf_touch_bound bound[2]; /* of raw, by its tangents there */
     swarf_trace trace;
 };
 
@@ -92,8 +92,8 @@ static swarf_status gather_level(struct gathering *g, int level, size_t first, s
         SWARF_TRY(swarf_surface_trace(surface, i, &seen->trace));
         swarf_trace_touch(&seen->trace, near->middle, &touch);
         seen->raw = touch.raw;
-        seen->convex = touch.convex;
-        memcpy(seen->tangent, touch.tangent, sizeof seen->tangent);
+        seen->bounds = touch.bounds;
+        memcpy(seen->bound, touch.bound, sizeof seen->bound);
         if (touch.raw > 2 * g->reach || touch.raw > g->ceiling + 2 * g->reach) continue;
         if (touch.exact) g->ceiling = fmin(g->ceiling, touch.raw);
         near->count++;
@@ -182,6 +182,16 @@ swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const 
     return SWARF_OK;
 }
 
+/* Whether the trace is further than `beaten` for what is known of it. */
+static int is_beyond(const struct seen *seen, const double way[3], double beaten)
+{
+    for (int i = 0; i < seen->bounds; i++) {
+        const double *slope = seen->bound[i].slope;
+        if (seen->bound[i].value + slope[0] * way[0] + slope[1] * way[1] + slope[2] * way[2] <= beaten) return 0;
+    }
+    return seen->bounds > 0;
+}
+
 void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3], swarf_surface_point *out)
 {
     swarf_surface_point found;
@@ -196,8 +206,7 @@ void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3
         const struct seen *seen = &near->seen[i];
         const double beaten = least < -first ? least : -first;
         if (seen->raw - away > beaten) break;
-        const double *slope = seen->tangent;
-        if (seen->convex && seen->raw + slope[0] * way[0] + slope[1] * way[1] + slope[2] * way[2] > beaten) continue;
+        if (is_beyond(seen, way, beaten)) continue;
         swarf_touch touch;
         swarf_trace_touch(&seen->trace, point, &touch);
         if (touch.value >= least) continue;

@@ -206,6 +206,13 @@ static void offer(swarf_touch *best, double value, double raw, const double grad
     best->piece = piece;
 }
 
+static void put_bound(swarf_touch *best, double value, const double slope[3])
+{
+    swarf_touch_bound *bound = &best->bound[best->bounds++];
+    bound->value = value;
+    memcpy(bound->slope, slope, sizeof bound->slope);
+}
+
 /* A cutter whose height does not depend on the place: at plan distance rho, along (gx, gy) from it, over heights from
  * `low` (beyond the tip at its low end) down to `high` (at its high end). */
 static void touch_level(const swarf_trace *trace, double rho, double gx, double gy, double low, double high, double t,
@@ -226,12 +233,11 @@ static void touch_level(const swarf_trace *trace, double rho, double gx, double 
             piece = k;
         }
         const double gradient[3] = {nr * gx, nr * gy, nz};
-        memcpy(best->tangent, gradient, sizeof gradient);
+        /* a convex function of the plan distance, with which it never falls, to a segment */
+        if (trace->kind == TRACE_LEVEL && body->component_count <= 2) put_bound(best, value, gradient);
         const double at = trace->kind == TRACE_LEVEL && trace->run == 0 && body->exact[piece].upper ? trace->t1 : t;
         offer(best, value, value, gradient, at, (int32_t)piece);
     }
-    /* a convex function of the plan distance, with which it never falls, to a segment */
-    best->convex = trace->kind == TRACE_LEVEL && body->component_count == 1;
 }
 
 static void touch_level_line(const swarf_trace *trace, const double p[3], swarf_touch *best)
@@ -314,10 +320,8 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
     const double gradient[3] = {gs * trace->ux - gw * trace->uy, gs * trace->uy + gw * trace->ux, gz};
     offer(best, value, raw, gradient, trace->t0 + (trace->t1 - trace->t0) * at / trace->run, touched);
     best->exact = 0;
-    best->convex = 1;
-    best->tangent[0] = ts * trace->ux - tw * trace->uy;
-    best->tangent[1] = ts * trace->uy + tw * trace->ux;
-    best->tangent[2] = tz;
+    const double tangent[3] = {ts * trace->ux - tw * trace->uy, ts * trace->uy + tw * trace->ux, tz};
+    put_bound(best, raw, tangent);
 }
 
 static void touch_ball(const swarf_trace *trace, const double p[3], swarf_touch *best)
@@ -332,7 +336,7 @@ static void touch_ball(const swarf_trace *trace, const double p[3], swarf_touch 
     const double gradient[3] = {away > 0 ? e[0] / away : 0, away > 0 ? e[1] / away : 0, away > 0 ? e[2] / away : -1};
     touch_cylinder(trace, p, R, ball->centre_z, top_of(trace->body), 0, best);
     offer(best, away - R, away - R, gradient, trace->t0 + (trace->t1 - trace->t0) * q / length, 0);
-    best->convex = 0; /* the least of two convex functions */
+    put_bound(best, away - R, gradient);
 }
 
 /* ---- any cutter on tilted lines and curves ------------------------------------------------------------------------

@@ -23,16 +23,21 @@ typedef struct swarf_trace {
     swarf_path path;          /* curve: the whole move */
 } swarf_trace;
 
+/** Tangent of a convex function at the point looked at. */
+typedef struct swarf_touch_bound {
+    double value, slope[3];
+} swarf_touch_bound;
+
 /** What a point sees of a trace. `raw` never changes faster than the point moves and is never above the distance to the
  *  sweep; it is below 0 wherever `value` is. */
 typedef struct swarf_touch {
     double value, raw;
     double gradient[3]; /* of value, unit */
-    double tangent[3];  /* gradient of raw, where that is convex */
     double t;           /* of the whole move */
     int32_t piece;
-    int32_t exact;  /* 1: raw is also an upper bound of the sweep's sign function */
-    int32_t convex; /* 1: raw is convex, so that it is nowhere below its tangent */
+    int32_t exact; /* 1: raw is also an upper bound of the sweep's sign function */
+    int32_t bounds;
+    swarf_touch_bound bound[2]; /* raw is nowhere below the least of these tangents; none: nothing is known */
 } swarf_touch;
 
 /** Parts a move is best looked at in: each turns by a right angle at most. */

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Last pass of contouring: a quadrilateral per crossing, or what tiles leave of it, as triangles. */
+#include "base/status.h"
+#include "mesh/contour.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* In voxels: triangles less high than this are avoided. */
+static const double least_height = 1e-3;
+
+/* Corner of a quadrilateral: the vertex of the cell `back` of the edge's voxel. */
+typedef struct corner {
+    double at[3]; /* in voxels from the edge's voxel */
+    uint32_t number;
+    int calm, tiled;
+} corner;
+
+static int find_corner(const contour *work, const contour_block *near, const int32_t voxel[3], int axis,
+                       const int back[2], corner *out)
+{
+    int32_t cell[3] = {voxel[0], voxel[1], voxel[2]};
+    cell[(axis + 1) % 3] -= back[0];
+    cell[(axis + 2) % 3] -= back[1];
+    const contour_block *block = swarf_contour_block_near(work, near, cell);
+    const int x = cell[0] & 7, bit = (cell[1] & 7) * 8 + (cell[2] & 7);
+    if (!block || !(block->cell_mask[x] >> bit & 1)) return 0;
+    const contour_cell *found =
+        block->cells + block->cell_rank[x] + __builtin_popcountll(block->cell_mask[x] & ((UINT64_C(1) << bit) - 1));
+    const contour_case *joined = &work->table.entry[found->config][found->flip];
+    uint32_t local = found->first + joined->of_edge[axis * 4 + back[0] * 2 + back[1]], left = local;
+    out->tiled = block->tile && block->tile[local] & SWARF_TILED;
+    if (block->tile) {
+        left = block->tile[local] & ~SWARF_TILED;
+        local = block->left[left];
+    }
+    out->number = (uint32_t)(block->vertex_first + left);
+    out->calm = (int)(block->calm_mask[x] >> bit & 1);
+    for (int k = 0; k < 3; k++)
+        out->at[k] = ((double)block->vertices[local].xyz[k] - work->layout->origin[k]) / work->layout->voxel - voxel[k];
+    return 1;
+}
+
+/* Cosine between a triangle and the true normal; -1 for a needle that may turn over when it is rounded to floats. */
+static double facing(const double *a, const double *b, const double *c, const double normal[3])
+{
+    double u[3], v[3], longest = 0;
+    for (int k = 0; k < 3; k++) {
+        u[k] = b[k] - a[k];
+        v[k] = c[k] - a[k];
+        longest += u[k] * u[k] + v[k] * v[k];
+    }
+    const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    if (square < least_height * least_height * longest) return -1;
+    return (n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2]) / sqrt(square);
+}
+
+/* Whether the two triangles on the diagonal corner[first] - corner[first + 2] meet the edge itself and not only its
+ * line: else they might reach into sheets above or below. */
+static int meets_edge(const corner q[4], int first, int axis)
+{
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    const double *p = q[first].at, *r = q[first + 2].at;
+    const double side = p[b] * r[c] - p[c] * r[b];
+    /* corner k lies in the k-th quadrant round the edge, so that the line is on the side of one of the two others */
+    const double *third = q[(first + 1) % 4].at;
+    const double third_side = (r[b] - p[b]) * (third[c] - p[c]) - (r[c] - p[c]) * (third[b] - p[b]);
+    if (side * third_side < 0) third = q[(first + 3) % 4].at;
+    const double area = (r[b] - p[b]) * (third[c] - p[c]) - (r[c] - p[c]) * (third[b] - p[b]);
+    if (area == 0) return 0;
+    const double w_third = side / area, w_p = (r[b] * third[c] - r[c] * third[b]) / area, w_r = 1 - w_third - w_p;
+    const double height = w_p * p[axis] + w_r * r[axis] + w_third * third[axis];
+    return height >= 0 && height <= 1;
+}
+
+static void put_facet(swarf_facet *facet, const contour_crossing *crossing, int outwards, float error, uint32_t a,
+                      uint32_t b, uint32_t c)
+{
+    facet->v[0] = a;
+    facet->v[1] = outwards ? b : c;
+    facet->v[2] = outwards ? c : b;
+    facet->error_mm = error;
+    for (int k = 0; k < 3; k++) facet->normal[k] = (int16_t)lrintf(crossing->normal[k] * 32767);
+}
+
+/* Which diagonal cuts the quadrilateral: 0, 1, or -1 for all four triangles round its crossing. */
+static int choose_diagonal(const corner q[4], int axis, int outwards, const contour_crossing *crossing)
+{
+    for (int k = 0; k < 4; k++)
+        if (q[k].calm) return -1;
+    double normal[3], least[2];
+    for (int k = 0; k < 3; k++) normal[k] = outwards ? crossing->normal[k] : -(double)crossing->normal[k];
+    for (int d = 0; d < 2; d++)
+        least[d] = fmin(facing(q[d].at, q[d + 1].at, q[d + 2].at, normal),
+                        facing(q[d].at, q[d + 2].at, q[(d + 3) % 4].at, normal));
+    const int meets[2] = {meets_edge(q, 0, axis), meets_edge(q, 1, axis)};
+    int best = least[1] > least[0] + 1e-3;
+    if (fabs(least[1] - least[0]) <= 1e-3) {
+        double length[2] = {0, 0};
+        for (int d = 0; d < 2; d++)
+            for (int k = 0; k < 3; k++) length[d] += (q[d].at[k] - q[d + 2].at[k]) * (q[d].at[k] - q[d + 2].at[k]);
+        best = length[1] < length[0] * (1 - 1e-6);
+    }
+    if (meets[best]) return best;
+    return meets[!best] ? !best : -1;
+}
+
+enum { NONE_SAME = -1, TWO_SAME = -2 };
+
+/* The corner that is the same as the next one, in a tile with it. */
+static int find_same(const corner q[4])
+{
+    int found = NONE_SAME;
+    for (int k = 0; k < 4; k++)
+        if (q[k].number == q[(k + 1) % 4].number) found = found == NONE_SAME ? k : TWO_SAME;
+    return found;
+}
+
+swarf_status swarf_contour_join(contour *work, contour_block *block)
+{
+    free(block->facets);
+    free(block->centres);
+    block->facets = NULL;
+    block->centres = NULL;
+    block->facet_count = block->full_count = block->centre_count = 0;
+    if (block->crossing_count == 0) return SWARF_OK;
+    swarf_facet *facets = malloc(4 * (size_t)block->crossing_count * sizeof *facets);
+    contour_vertex *centres = malloc(block->crossing_count * sizeof *centres);
+    block->facets = facets;
+    block->centres = centres;
+    if (!facets || !centres) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for facets");
+    static const int back[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}; /* counter-clockwise seen against the axis */
+    const contour_crossing *crossing = block->crossings;
+    for (int axis = 0; axis < 3; axis++)
+        for (int x = 0; x < 8; x++)
+            for (uint64_t word = block->edge_mask[axis][x]; word; word &= word - 1, crossing++) {
+                const int bit = __builtin_ctzll(word);
+                const int32_t voxel[3] = {block->ijk[0] + x, block->ijk[1] + (bit >> 3), block->ijk[2] + (bit & 7)};
+                const int outwards = block->inside[x][bit >> 3] >> (bit & 7) & 1;
+                corner q[4];
+                int found = 0;
+                for (int k = 0; k < 4; k++) found += find_corner(work, block, voxel, axis, back[k], &q[k]);
+                if (found < 4) continue; /* at the border of the layout: the mesh will be found open */
+                block->full_count += 2;
+                float error = 0;
+                for (int k = 0; k < 4; k++)
+                    if (q[k].tiled) error = (float)(SWARF_TILE_ERROR * work->error_mm);
+                swarf_facet *next = facets + block->facet_count;
+                const int same = find_same(q);
+                if (same != NONE_SAME) {
+                    if (same == TWO_SAME) continue;
+                    put_facet(next, crossing, outwards, error, q[(same + 1) % 4].number, q[(same + 2) % 4].number,
+                              q[(same + 3) % 4].number);
+                    block->facet_count++;
+                    continue;
+                }
+                const int d = choose_diagonal(q, axis, outwards, crossing);
+                if (d >= 0) {
+                    put_facet(next, crossing, outwards, error, q[d].number, q[d + 1].number, q[d + 2].number);
+                    put_facet(next + 1, crossing, outwards, error, q[d].number, q[d + 2].number, q[(d + 3) % 4].number);
+                    block->facet_count += 2;
+                    continue;
+                }
+                block->full_count += 2;
+                contour_vertex *centre = &centres[block->centre_count];
+                for (int k = 0; k < 3; k++)
+                    centre->xyz[k] = (float)(work->layout->origin[k] +
+                                             (voxel[k] + (k == axis ? (double)crossing->t : 0)) * work->layout->voxel);
+                for (int k = 0; k < 4; k++)
+                    put_facet(next + k, crossing, outwards, error, q[k].number, q[(k + 1) % 4].number,
+                              SWARF_CENTRE | block->centre_count);
+                block->facet_count += 4;
+                block->centre_count++;
+            }
+    swarf_facet *fitting = realloc(facets, (block->facet_count ? block->facet_count : 1) * sizeof *facets);
+    if (fitting) block->facets = fitting;
+    return SWARF_OK;
+}
