@@ -2,6 +2,7 @@
 """Verification: known deviations are found with their line, reports are whole, bad designs are refused."""
 import json
 import math
+import os
 import re
 import subprocess
 import sys
@@ -207,8 +208,22 @@ def test_command(tmp_path):
     assert "passed" in done.stdout and (tmp_path / "r.html").read_text().startswith("<!DOCTYPE html>")
     done = subprocess.run([*words, "--allowance", "0.5"], capture_output=True, text=True, timeout=120)
     assert done.returncode == 1 and "gouge" in done.stderr
-    done = subprocess.run([*words, "--report", str(tmp_path / "r.pdf")], capture_output=True, text=True, timeout=120)
-    assert done.returncode == 2 and "r.pdf" in done.stderr
+    done = subprocess.run([*words, "--report", str(tmp_path / "r.doc")], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2 and "r.doc" in done.stderr
+    # PDF by a converter that is installed, here one that only copies; without one it is said what is needed
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    (tools / "weasyprint").write_text('#!/bin/sh\n/bin/cp "$1" "$2"\n')
+    (tools / "weasyprint").chmod(0o755)
+    paper = [*words, "--report", str(tmp_path / "r.pdf")]
+    done = subprocess.run(paper, capture_output=True, text=True, timeout=120, env={**os.environ, "PATH": str(tools)})
+    assert done.returncode == 0 and (tmp_path / "r.pdf").read_text().startswith("<!DOCTYPE html>"), done.stderr
+    (tools / "weasyprint").write_text("#!/bin/sh\necho broken >&2\nexit 3\n")
+    done = subprocess.run(paper, capture_output=True, text=True, timeout=120, env={**os.environ, "PATH": str(tools)})
+    assert done.returncode == 2 and "status 3, saying broken" in done.stderr
+    (tools / "weasyprint").unlink()
+    done = subprocess.run(paper, capture_output=True, text=True, timeout=120, env={**os.environ, "PATH": str(tools)})
+    assert done.returncode == 2 and "r.pdf: no converter" in done.stderr and "weasyprint" in done.stderr
 
 
 def test_moves_that_cannot_be_simulated_fail(tmp_path):

@@ -8,12 +8,12 @@ import os
 import time
 from typing import Any
 
-from .. import accept, document, inputs, loads, report
+from .. import accept, document, inputs, loads, pdf, report
 from ..console import DONE, FINDINGS, check_outputs, one_line
 from ..progress import Bar
 from ..verify import CAD_SUFFIXES, DESIGN_SUFFIXES, Verdict, read_design, verify
 
-REPORT_SUFFIXES = (".html", ".json")
+REPORT_SUFFIXES = (".html", ".json", ".pdf")
 
 
 def add(subparsers: Any) -> None:
@@ -46,7 +46,8 @@ def add(subparsers: Any) -> None:
     command.add_argument("--no-loads", action="store_true", help="do not measure loads: faster")
     command.add_argument("--accept", metavar="FILE.json", help="findings that are accepted, each with its reason")
     command.add_argument("--report", metavar="FILE", action="append", default=[],
-                         help="write a report: .html .json (repeatable)")
+                         help="write a report: .html .json, and .pdf where a converter is installed "
+                              f"({', '.join(pdf.CONVERTERS)}) (repeatable)")
 
 
 def _limit(word: str) -> loads.Limits:
@@ -71,6 +72,11 @@ def run(arguments: argparse.Namespace) -> int:
     for path in arguments.report:
         if os.path.splitext(path)[1].lower() not in REPORT_SUFFIXES:
             raise ValueError(f"{path}: unknown suffix; a report is {' or '.join(REPORT_SUFFIXES)}")
+        if os.path.splitext(path)[1].lower() == ".pdf":
+            try:
+                pdf.find()
+            except ValueError as error:
+                raise ValueError(f"{path}: {error}") from None
     check_outputs(arguments.report, arguments.input)
     if arguments.material is not None and arguments.limits is None:
         raise ValueError("--material chooses among the materials of a file of limits; give --limits FILE.json")
@@ -96,9 +102,15 @@ def run(arguments: argparse.Namespace) -> int:
             resolution=arguments.resolution, fixtures=fixtures, clearance=arguments.clearance,
             loads=not arguments.no_loads, limits=limits, accept=accepted, progress=bar)
         made = report.make_verification(done, arguments.input, seconds_read)
+        text = ""  # of the document, made once
         for path in arguments.report:
-            if os.path.splitext(path)[1].lower() == ".html":
-                report.write_text(document.make(done, made, lambda fraction: bar("pictures", fraction)), path)
+            suffix = os.path.splitext(path)[1].lower()
+            if suffix != ".json":
+                text = text or document.make(done, made, lambda fraction: bar("pictures", fraction))
+            if suffix == ".html":
+                report.write_text(text, path)
+            elif suffix == ".pdf":
+                pdf.write(text, path)
             else:
                 report.write(made, path)
     inputs.print_notes(job)
