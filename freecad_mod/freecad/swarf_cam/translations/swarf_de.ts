@@ -699,6 +699,10 @@
             <translation>Bei Werkzeugwechseln anhalten</translation>
         </message>
         <message>
+            <source>Stop checking at the first error</source>
+            <translation>Beim ersten Fehler aufhören zu prüfen</translation>
+        </message>
+        <message>
             <source>Stopped at the first error: the rest was not looked at</source>
             <translation>Beim ersten Fehler angehalten: der Rest wurde nicht angesehen</translation>
         </message>

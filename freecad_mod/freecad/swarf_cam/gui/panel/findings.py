@@ -27,7 +27,7 @@ KINDS = {
     "feed": QT_TRANSLATE_NOOP("Swarf", "Feed"), "plunge": QT_TRANSLATE_NOOP("Swarf", "Plunges"),
     "travel": QT_TRANSLATE_NOOP("Swarf", "Travel"), "tool": QT_TRANSLATE_NOOP("Swarf", "Tool"),
     "load": QT_TRANSLATE_NOOP("Swarf", "Loads"), "uncut": QT_TRANSLATE_NOOP("Swarf", "Not simulated"),
-    "acceptance": QT_TRANSLATE_NOOP("Swarf", "Idle acceptances"),
+    "loose": QT_TRANSLATE_NOOP("Swarf", "Loose pieces"), "acceptance": QT_TRANSLATE_NOOP("Swarf", "Idle acceptances"),
     "loose": QT_TRANSLATE_NOOP("Swarf", "Loose pieces"),
 }
 
