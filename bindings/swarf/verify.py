@@ -10,12 +10,14 @@ from typing import Any, Callable, Optional, Sequence
 from . import accept as accepting
 from . import loads as loading
 from . import loose, readers
-from ._native import Check, Cluster, Deviation, Mesh, Scene, Solid, Stock, compare_overlap, compare_place, measure_deviation
+from ._native import (Check, Cluster, Deviation, Mesh, Scene, Simulation, Solid, Stock, compare_overlap, compare_place,
+                      measure_deviation)
 from .accept import Acceptance
 from .job import Job, operation_of
 from .loads import Limits
 from .records import MOVE
-from .simulate import Progress, Result, make_stock
+from .simulate import Progress, Result
+from .stocks import make_first
 
 #: What a design file can be, by its suffix.
 DESIGN_SUFFIXES = (".stl", ".ply", ".obj")
@@ -124,11 +126,12 @@ def verify(
     ``tolerance`` in mm is for both sides; ``excess`` (material left) and ``gouge`` (material missing) set one of them.
     ``allowance`` is material that is meant to be left. Material left where no move went is a warning, with
     ``complete`` an error. Rapids through material, shanks and holders that touch it, and all else that Stock.check()
-    looks for are findings too, as are moves that cannot be simulated (turned axes) and operations that remove nothing;
+    looks for are findings too, as are moves that cannot be simulated (turned axes) and operations that remove nothing, in
+    the set-ups before as well;
     ``fixtures``, with those of the job, and ``clearance`` are handed to it. ``loads`` measures what each move asks of its
     tool; beyond ``limits`` (see swarf.loads) it is a warning. Findings that ``accept`` or the job's document knows do not
     fail.
-    ValueError without a design or moves; GeometryError where the design encloses nothing; whatever make_stock() and
+    ValueError without a design or moves; GeometryError where the design encloses nothing; whatever make_first() and
     Stock.check() raise.
     """
     mesh = job.design if design is None else design
@@ -152,12 +155,14 @@ def verify(
     solid = timed("design", lambda report: Solid(mesh, progress=report))
     fixtures = [*job.fixtures, *fixtures]
     clamps = [Solid(fixture) for fixture in fixtures]
-    first = timed("stock", lambda report: make_stock(job.stock, voxel=voxel, resolution=resolution, progress=report))
+    made_first = timed("stock", lambda report: make_first(
+        job.stock, voxel=voxel, resolution=resolution, progress=report))
+    first, before = made_first.stock, made_first.played
     stock = first.copy()
     checked = timed("cut", lambda report: stock.check(
         job.program, job.tools, fixtures=clamps, clearance=clearance, teeth=job.teeth, loads=loads or bool(limits),
         progress=report))
-    result = Result(job, stock, checked.simulation, seconds=seconds)
+    result = Result(job, stock, checked.simulation, seconds=seconds, before=before)
     deviation = timed("compare", lambda report: measure_deviation(
         stock, solid, excess=tolerances[0], gouge=tolerances[1], allowance=allowance, region=region, first=first,
         program=job.program, tools=job.tools, progress=report))
@@ -165,7 +170,7 @@ def verify(
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits, region=region)
-    found = [*findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
+    found = [*findings_before(before), *findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
              *_design_findings(solid, first, mesh), *fixture_findings(first, clamps),
              *_loose_findings(job, stock, first),
              *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
@@ -187,6 +192,21 @@ def settle(findings: Sequence[Verdict], acceptances: Sequence[Acceptance]) -> li
 def findings_of(job: Job, checked: Check, voxel: float) -> list[Verdict]:
     """What Stock.check() found on a job at a voxel size, and what it says of moves that were not simulated."""
     return [*_check_findings(job, checked, voxel), *_uncut_findings(job, checked)]
+
+
+def findings_before(played: Sequence[tuple[Job, Simulation]]) -> list[Verdict]:
+    """What the simulations of the set-ups before say, less what their own jobs accept. Lines, moves and operations are
+    of another program than the others': the text has them."""
+    found = []
+    for job, simulation in played:
+        of_job = [Verdict(item.severity, item.text, "uncut", *operation_of(job, item.move), item.move)
+                  for item in simulation.findings]
+        accepting.apply(job.accepted, of_job)
+        for item in of_job:
+            if item.accepted is None:
+                where = f", line {item.line}" if item.line else ""
+                found.append(Verdict(item.severity, f"set-up {job.name!r}{where}: {item.text}", "uncut"))
+    return found
 
 
 def _check_findings(job: Job, checked: Check, voxel: float) -> list[Verdict]:

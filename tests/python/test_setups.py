@@ -7,9 +7,11 @@ import pytest
 
 import swarf
 from swarf import placement
+from swarf.accept import Acceptance
 from swarf.cli import main
 from swarf.job import Job
 from swarf.stocks import make_first, make_stock, stock_box
+from swarf.verify import findings_before
 
 LO, HI, VOXEL = (0.0, 0.0, -10.0), (60.0, 40.0, 0.0), 0.5
 BOX = {"kind": "box", "lo": LO, "hi": HI}
@@ -18,6 +20,8 @@ TOOLS = {1: "flat:d=6,l=20"}
 TOP = "T1 M6\nS8000 M3\nG0 X-10 Y20 Z5\nG1 Z-4 F200\nG1 X70 F600\nG0 Z5\nM2\n"
 #: Across it from the other side: 8 mm deep of 10, so that both meet.
 BOTTOM = "T1 M6\nS8000 M3\nG0 X20 Y-10 Z5\nG1 Z-8 F200\nG1 Y50 F600\nG0 Z5\nM2\n"
+#: After the slot, a move that is not simulated.
+TURNED = TOP.replace("M2\n", "G1 X0 A45 F100\nM2\n")
 LEFT_MM3 = 60 * 40 * 10 - 60 * 6 * 4 - 40 * 6 * 8 + 6 * 6 * 2
 
 
@@ -183,3 +187,33 @@ def test_command_line_mistakes(tmp_path, capsys):
     assert status == 2 and "none.nc" in errors
     status, errors = run(capsys, top, *common, "--then", top, "--holder", "7=SK40-ER16,stickout=35")
     assert status == 2 and "there is no tool 7" in errors
+
+
+def test_an_earlier_set_up_that_fails_fails_the_verification(tmp_path, capsys):
+    """What is left is the design, but a move of the first program was not simulated: verify fails as simulate does."""
+    top, bottom, report = tmp_path / "top.nc", tmp_path / "bottom.nc", tmp_path / "report.json"
+    top.write_text(TURNED)
+    bottom.write_text(BOTTOM)
+    design = tmp_path / "design.ply"
+    common = ("--stock", "box:0,0,-10,60,40,0", "--tool", "1=" + TOOLS[1], "--voxel", VOXEL, "--then", bottom, "--turn",
+              "x180,top=0")
+    status, errors = run(capsys, top, *common, "--output", design)
+    assert status == 1 and "error: top.nc: line" in errors
+    words = ["verify", top, *common, "--design", design, "--report", report]
+    assert main([str(word) for word in words]) == 1
+    assert "set-up 'top.nc', line" in capsys.readouterr().err
+    told = json.loads(report.read_text())
+    assert not told["verification"]["passed"] and [entry["job"] for entry in told["set_ups_before"]] == ["top.nc"]
+    (found,) = (entry for entry in told["findings"] if entry["severity"] == "error")
+    assert (found["kind"], found["line"], found["move"], found["operation"]) == ("uncut", 0, -1, None)
+    accepted = tmp_path / "accepted.json"
+    accepted.write_text(json.dumps([{"reason": "the fourth axis is locked", "text": "set-up 'top.nc'"}]))
+    assert main([str(word) for word in [*words, "--accept", accepted]]) == 0
+
+
+def test_what_an_earlier_job_accepts_is_settled():
+    top = make_job(TURNED, BOX, "top")
+    played = top, make_stock(BOX, voxel=VOXEL).simulate(top.program, top.tools)
+    assert [found.severity for found in findings_before([played])] == ["error"]
+    top.accepted = [Acceptance("locked", kind="uncut")]
+    assert findings_before([played]) == []

@@ -62,12 +62,13 @@ def _doubt(text):
 
 def _check(job, voxel_mm, doubts, report, stop, clearance_mm):
     swarf = native.load()
-    from swarf.simulate import make_stock
-    from swarf.verify import findings_of, fixture_findings, settle
+    from swarf.stocks import make_first
+    from swarf.verify import findings_before, findings_of, fixture_findings, settle
 
-    stock = make_stock(job.stock, voxel=voxel_mm, progress=lambda done: report("stock", done))
+    first = make_first(job.stock, voxel=voxel_mm, progress=lambda done: report("stock", done))
+    stock = first.stock
     clamps = [swarf.Solid(fixture) for fixture in job.fixtures]
-    doubts += fixture_findings(stock, clamps)
+    doubts += findings_before(first.played) + fixture_findings(stock, clamps)
     checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=clearance_mm, teeth=job.teeth, stop=stop,
                           progress=lambda done: report("cut", done))
     found = findings_of(job, checked, voxel_mm)

@@ -180,6 +180,13 @@ def estimate(lo, hi, voxel_mm):
 STAGES = {"stock": (0.0, 0.1), "cut": (0.1, 0.5), "compare": (0.6, 0.2), "mesh": (0.8, 0.1), "write": (0.9, 0.1)}
 
 
+def _lines(findings, operations, begin=""):
+    """What a swarf.Simulation noticed, a line of text each."""
+    return ["%s: %soperation '%s', command %d: %s" % (
+        item.severity, begin, operations[item.operation] if 0 <= item.operation < len(operations) else "-", item.line,
+        item.text) for item in findings]
+
+
 def simulate(data, voxel_mm, folder, progress=None):
     """Cut the stock of a JobData and write stock.vdb and stock.stl into a folder -> Result.
 
@@ -197,9 +204,10 @@ def simulate(data, voxel_mm, folder, progress=None):
                           progress=report if progress else None)
     outcome, comparison = done.simulation, done.comparison
     names = data.moves.operations
-    findings = ["%s: operation '%s', command %d: %s" % (
-        item.severity, names[item.operation] if 0 <= item.operation < len(names) else "-", item.line, item.text)
-        for item in outcome.findings]
+    # a set-up before that was kept says nothing here: its own simulation has said it
+    findings = [line for job, played in done.before
+                for line in _lines(played.findings, job.program.operations, "job '%s', " % job.name)]
+    findings += _lines(outcome.findings, names)
     findings += ["warning: operation '%s', command %d: %s" % (piece.operation or "-", piece.line, piece.text)
                  for piece in done.loose.pieces]
     colours = importlib.import_module(swarf.__name__ + ".colours").make("operation", done.mesh, done.surface, done.job)
@@ -207,7 +215,8 @@ def simulate(data, voxel_mm, folder, progress=None):
         stock_file, mesh_file, len(data.moves), list(names), list(outcome.removed_by_operation),
         outcome.volume_initial, outcome.volume_final, comparison.excess_mm3 if comparison else None,
         comparison.gouge_mm3 if comparison else None, findings,
-        sum(item.severity == "error" for item in outcome.findings), done.seconds["total"], colours)
+        sum(item.severity == "error" for played in (*(played for _, played in done.before), outcome)
+            for item in played.findings), done.seconds["total"], colours)
 
 
 # Error of a mesh where nobody says, in voxels: swarf.simulate's own.

@@ -9,7 +9,7 @@ import unittest
 import FreeCAD
 import samples
 from FreeCAD import Vector
-from freecad.swarf_cam import native
+from freecad.swarf_cam import checks, native
 from freecad.swarf_cam.app import setups, simulation
 from freecad.swarf_cam.core import exchange
 from freecad.swarf_cam.core.errors import JobError
@@ -102,6 +102,19 @@ class TestSetUps(unittest.TestCase):
         self.bottom.SwarfStockPlacement = FreeCAD.Placement()
         self.document.recompute()
         self.assertEqual((first.UpToDate, second.UpToDate), (True, False))
+
+    def test_what_the_first_does_not_do_is_told_when_it_is_played(self):
+        _, second = self.chain()
+        self.assertEqual((second.Errors, second.Findings), (0, []))
+        self.top.Operations.Group[0].Path = samples.path_of("G0 X-5 Y10 Z5", "G1 X45 F10")
+        self.document.recompute()
+        simulation.simulate(second)
+        (line,) = second.Findings
+        self.assertRegex(line, "^note: job '%s', operation 'Slot', command .*removes nothing" % self.top.Label)
+        job = native.to_job(setups.read_job(self.bottom))
+        outcome = checks.run(job, VOXEL, 0.05, lambda done: False)
+        (found,) = (verdict for verdict in outcome.verdicts if verdict.kind == "uncut")
+        self.assertRegex(found.text, "^set-up '%s'.*removes nothing" % self.top.Label)
 
     def test_undo(self):
         first = self.simulate(self.top)
