@@ -96,7 +96,10 @@ def _read_set_up(arguments: argparse.Namespace, set_up: SetUp, stock: Optional[d
     options = gcode.options(arguments)
     job = readers.read(path, set_up.job, lambda fraction: bar("read", fraction), options)
     if stock is not None:
+        own = job.stock
         job.stock = stock
+        if stock["kind"] == "result" and own is not None and own["kind"] == "result" and "placement" in own:
+            job.stock = {**stock, "placement": own["placement"]}  # how the document turns what the job before leaves
     if set_up.turn is not None and job.stock is not None:
         job.stock = {**job.stock, "placement": set_up.turn}
     for number, (cutter, text, teeth) in tools.items():

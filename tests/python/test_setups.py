@@ -6,7 +6,7 @@ import math
 import pytest
 
 import swarf
-from swarf import placement
+from swarf import placement, readers
 from swarf.accept import Acceptance
 from swarf.cli import main
 from swarf.job import Job
@@ -217,3 +217,23 @@ def test_what_an_earlier_job_accepts_is_settled():
     assert [found.severity for found in findings_before([played])] == ["error"]
     top.accepted = [Acceptance("locked", kind="uncut")]
     assert findings_before([played]) == []
+
+
+@pytest.mark.parametrize("turn, wanted", [((), LEFT_MM3), (("--turn", "dx=0"), LEFT_MM3 + (4 - 2) * 6 * 6)])
+def test_a_document_says_how_its_job_turns_the_stock(tmp_path, capsys, monkeypatch, turn, wanted):
+    """A reader's job that cuts the result of another keeps its placement behind --then, unless --turn gives one: both
+    slots from above, 4 and 8 deep, have 4 mm of depth in common instead of 2."""
+    (tmp_path / "top.nc").write_text(TOP)
+    read = readers.read
+
+    def read_document(path, *words):
+        if not str(path).endswith(".doc"):
+            return read(path, *words)
+        rows = placement.parse("x180,top=0").rows((LO, HI))
+        return make_job(BOTTOM, {"kind": "result", "job": make_job(TOP, BOX), "placement": rows}, "bottom")
+
+    monkeypatch.setattr(readers, "read", read_document)
+    status, _ = run(capsys, tmp_path / "top.nc", "--stock", "box:0,0,-10,60,40,0", "--tool", "1=" + TOOLS[1], "--voxel",
+                    VOXEL, "--then", "part.doc", *turn, "--output", tmp_path / "both.ply")
+    assert status == 0
+    assert swarf.Mesh.read(tmp_path / "both.ply").volume == pytest.approx(wanted, rel=2e-5)
