@@ -20,7 +20,7 @@
 static const double most_apart = 1;
 
 /* Beside edges the stock's field is rounded by this many voxels; what is more is there. */
-static const double most_rounded = 0.4;
+static const double most_rounded = 0.5;
 
 /* Deviations beside edges are not summed; those of the faces stand for them as long as the faces have this share of the
  * area. */
