@@ -319,6 +319,7 @@ class FakeSession:
 
     def __init__(self):
         self.at, self.steps, self.broken_off = 0, 0, 0
+        self.exact = []
 
     def step(self, move, seconds, progress=None):
         if move == 13:
@@ -327,14 +328,16 @@ class FakeSession:
         self.at = min(self.at + 10, move) if move > self.at else move
         return self.at
 
-    def draw(self, view, place, budget_ms, progress=None):
-        if budget_ms is None:
+    def draw(self, view, place, budget_ms, progress, rays):
+        if budget_ms is None and rays == 1:
+            self.exact.append(place)
+        elif budget_ms is None:
             for _ in range(20):
                 threading.Event().wait(0.005)
                 if progress(0):
                     self.broken_off += 1
                     raise Cancelled
-        return view, place, budget_ms is None
+        return view, place, budget_ms is None and rays > 1
 
 
 def running(session):
@@ -351,6 +354,7 @@ def test_engine_goes_to_the_newest_wish_and_refines_it():
     listener.wait(lambda: ("view", 35.5, True) in listener.frames)
     places = [place for _, place, _ in listener.frames]
     assert places == sorted(places) and session.steps >= 4, "it shows what lies between"
+    assert session.exact == [35.5], "with one ray a pixel first: edges are sharp soon"
     engine.wish(5.0)
     listener.wait(lambda: ("view", 5.0, True) in listener.frames)
     engine.wish(view="other")

@@ -14,6 +14,7 @@ from typing import Any
 from . import native
 from .core import moves, pixels
 from .core.clock import Clock
+from .core.engine import RAYS_AT_REST
 from .core.listing import Listing
 from .core.playback import Playback
 from .core.transport import STOP_FINDING, STOP_OPERATION, STOP_TOOL_CHANGE
@@ -21,8 +22,8 @@ from .core.transport import STOP_FINDING, STOP_OPERATION, STOP_TOOL_CHANGE
 # Memory for going back, as a share of what the stock may take.
 HISTORY_SHARE = 2.0
 
-# Rays per edge of a pixel at rest.
-SAMPLES = 3
+# Rays along the edge of a pixel in the best pictures.
+SAMPLES = RAYS_AT_REST[-1]
 
 # Pixels of the picture per edge of one ray while things move, at most: more cannot be made out.
 COARSE_MAX = 4
@@ -216,10 +217,10 @@ class Session:
         rgba = bytes(picture.rgba)
         return rgba if design is None else pixels.blend(rgba, bytes(design.rgba)), picture.depth, values
 
-    def draw(self, view, place, budget_ms, progress=None):
-        """A Frame; budget_ms None: as good as it gets."""
+    def draw(self, view, place, budget_ms, progress=None, samples=SAMPLES):
+        """A Frame; budget_ms None: exact, with samples x samples rays for pixels at edges."""
         tinted = view.tolerance_mm > 0
-        coarse, how = 1 if budget_ms is None else self._coarse[tinted], {"samples": SAMPLES}
+        coarse, how = 1 if budget_ms is None else self._coarse[tinted], {"samples": samples}
         if budget_ms is not None:
             how = {"samples": 1}
             # coarse rays make steps of the edges' lines
@@ -240,7 +241,8 @@ class Session:
             elif took < 0.5 * budget_ms:
                 coarse = max(coarse - 1, 1)
             self._coarse[tinted] = coarse
-        return Frame(view.width, view.height, rgba, depth, view.camera, place, budget_ms is None, values)
+        return Frame(view.width, view.height, rgba, depth, view.camera, place, budget_ms is None and samples == SAMPLES,
+                     values)
 
     def tool_at(self, place):
         """Number of the tool in the spindle at a place, -1 for none."""

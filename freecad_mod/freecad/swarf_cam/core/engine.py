@@ -3,8 +3,8 @@
 what came out, and looks again at what is wanted.
 
 The GUI writes the newest wish (place in the program, view) and forgets older ones; what is asked by call() is done in
-turn. While anything moves pictures are drawn within a budget of time; at rest they are refined, and a new wish breaks
-that off. Listeners are called in this thread.
+turn. While anything moves pictures are drawn within a budget of time; at rest they are refined step by step, and a new
+wish breaks that off. Listeners are called in this thread.
 """
 
 import collections
@@ -21,13 +21,16 @@ SLICE_SECONDS = 0.04
 # Seconds without a new wish after which the picture is refined: shorter would refine between two mouse moves.
 REST_SECONDS = 0.12
 
+# Rays along the edge of a pixel in the pictures at rest, one after the other: exact at once, then smooth.
+RAYS_AT_REST = (1, 3)
+
 
 class Engine:
     """open_session(progress) -> the session that cuts and draws; listener has opened(session), frame(frame),
     progress(fraction), failed(error) and finished(), which comes last.
 
-    A session has step(place, seconds, progress) -> place it stands at, and draw(view, place, budget_ms, progress) ->
-    frame, budget_ms None for as good as it gets. Both raise cancelled_type when a progress answered true.
+    A session has step(place, seconds, progress) -> place it stands at, and draw(view, place, budget_ms, progress, rays)
+    -> frame, budget_ms None for all the time it takes. Both raise cancelled_type when a progress answered true.
     """
 
     def __init__(self, open_session, listener, cancelled_type):
@@ -93,11 +96,11 @@ class Engine:
         return self._stopping or self._cancelling
 
     def _work(self, session):
-        drawn, sharp, failed = -1, True, -1
+        drawn, rest, failed = -1, len(RAYS_AT_REST), -1  # rest: how many of the pictures at rest are drawn
         at = 0.0
         while True:
             with self._changed:
-                while not (self._stopping or self._calls or self._revision != drawn or not sharp):
+                while not (self._stopping or self._calls or self._revision != drawn or rest < len(RAYS_AT_REST)):
                     self._changed.wait()
                 if self._stopping:
                     return
@@ -106,25 +109,26 @@ class Engine:
             if call:
                 self._do(session, *call)
                 continue
-            if revision == drawn and self._wait_for_rest(revision):
+            if revision == drawn and rest == 0 and self._wait_for_rest(revision):
                 continue
             try:
                 if revision != drawn or at != place:
                     at = session.step(place, SLICE_SECONDS, self._break_off)
                     if view is not None:
-                        self._listener.frame(session.draw(view, at, BUDGET_MS, self._break_off))
+                        self._listener.frame(session.draw(view, at, BUDGET_MS, self._break_off, 1))
                     drawn = revision if at == place else -1
-                    sharp = view is None
+                    rest = len(RAYS_AT_REST) if view is None else 0
                 else:
-                    self._listener.frame(session.draw(view, place, None, lambda _: self._is_old(revision)))
-                    sharp = True
+                    self._listener.frame(
+                        session.draw(view, place, None, lambda _: self._is_old(revision), RAYS_AT_REST[rest]))
+                    rest += 1
             except self._cancelled_type:
                 continue
             except Exception as error:  # one failure per wish: the next wish may do better
                 if failed != revision:
                     self._listener.failed(error)
                 failed = drawn = revision
-                sharp = True
+                rest = len(RAYS_AT_REST)
 
     def _break_off(self, _):
         return self._stopping
