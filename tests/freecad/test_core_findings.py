@@ -89,7 +89,7 @@ def test_checks_can_be_broken_off(swarf):
     told = []
     run(data, listing, progress=told.append)
     assert told == sorted(told) and told[-1] <= 1.0
-    for limit in (0.0, told[len(told) // 2], told[-1]):
+    for limit in (0.0, told[len(told) // 2] / 2):  # how often it is told depends on the machine
         with pytest.raises(swarf.Cancelled):
             run(data, listing, progress=lambda done, limit=limit: done >= limit)
 
