@@ -147,13 +147,13 @@ class TestFixtures(unittest.TestCase):
         self.assertEqual(fixtures.fixtures_of(self.job), [])
         self.keep(self.clamp, self.clamp)
         self.assertEqual(fixtures.fixtures_of(self.job), [self.clamp])
-        after = state.job_signature(self.job, 0.5)
-        self.assertNotEqual(after, before)
+        self.assertEqual(state.job_signature(self.job, 0.5), before, "the stock knows nothing of it")
+        after = fixtures.measures_of(self.job)
         (name, (points, triangles)), = jobs.read_job(self.job).fixtures
         self.assertEqual((name, len(triangles)), ("Clamp", 36))
         self.assertEqual((min(points[0::3]), max(points[2::3])), (40.0, 10.0))
         self.clamp.Placement.Base.x = 1.0
-        self.assertNotEqual(state.job_signature(self.job, 0.5), after)
+        self.assertNotEqual(fixtures.measures_of(self.job), after)
         self.document.undo()
         self.document.undo()
         self.assertEqual(fixtures.fixtures_of(self.job), [])

@@ -10,7 +10,7 @@ import Mesh
 import Part
 import samples
 from freecad.swarf_cam import native
-from freecad.swarf_cam.app import model, simulation
+from freecad.swarf_cam.app import fixtures, model, simulation
 from freecad.swarf_cam.core.errors import JobError
 
 VOXEL = 0.5
@@ -95,6 +95,15 @@ class TestModel(unittest.TestCase):
         full, _ = model.estimate(self.obj, ".stl", 0)
         self.assertLess(full / 2, model.export(self.obj, self.path("full.stl"), error_mm=0))
         self.assertEqual(model.estimate(self.obj, ".vdb", 0)[1], os.path.getsize(self.obj.Stock))
+
+    def test_fixtures_leave_the_result_alone(self):
+        clamp = self.document.addObject("Part::Feature", "Clamp")
+        clamp.Shape = Part.makeBox(5, 5, 20, FreeCAD.Vector(40, 0, -10))
+        fixtures.keep(self.job, [clamp])
+        clamp.Placement.Base.x = 1.0
+        self.document.recompute()
+        self.assertTrue(self.obj.UpToDate)
+        self.assertGreater(model.export(self.obj, self.path("part.stl")), 0)
 
     def test_colours_of_the_object(self):
         self.assertEqual(len(self.obj.FaceColours), self.obj.Mesh.CountFacets)

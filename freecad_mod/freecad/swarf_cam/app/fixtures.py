@@ -55,12 +55,16 @@ def placed(obj):
     return (body, None) if hasattr(body, "Solids") else (None, body)
 
 
-def measures(obj):
-    """What changes when a fixture does."""
-    shape, mesh = placed(obj)
-    body = shape or mesh
-    box = body.BoundBox
-    return [box.XMin, box.YMin, box.ZMin, box.XMax, box.YMax, box.ZMax, body.Volume, body.Area]
+def measures_of(job):
+    """What changes when a fixture of a job does, to what survives saving. JobError for a fixture without a body."""
+    result = []
+    for obj in fixtures_of(job):
+        shape, mesh = placed(obj)
+        body = shape or mesh
+        box = body.BoundBox
+        values = [box.XMin, box.YMin, box.ZMin, box.XMax, box.YMax, box.ZMax, body.Volume, body.Area]
+        result += [round(value, 5) + 0.0 for value in values]
+    return result
 
 
 def mesh_steps(job):

@@ -5,7 +5,7 @@ import hashlib
 
 from ..core import steps
 from ..core.signature import signature
-from . import fixtures, holders
+from . import holders
 from . import job as jobs
 from . import tools
 
@@ -41,7 +41,8 @@ def _shape(shape):
 
 
 def job_signature(job, voxel_mm):
-    """Signature of everything a simulation of the job reads; None when there is no job to read."""
+    """Signature of everything that the result of a simulation depends on, which fixtures are not part of; None when
+    there is no job to read."""
     return steps.run(signature_steps(job, voxel_mm, {}))
 
 
@@ -69,9 +70,6 @@ def signature_steps(job, voxel_mm, known, stock=None):
                     bits[controller.Name].append(held)
         operations.append(entry)
     design = [_shape(getattr(model, "Shape", None)) for model in getattr(job.Model, "Group", None) or []]
-    clamps = ["%.5f" % (round(value, 5) + 0.0) for obj in fixtures.fixtures_of(job) for value in fixtures.measures(obj)]
-    if clamps:
-        design.append(clamps)
     if stock is None:
         stock = _shape(getattr(job.Stock, "Shape", None))
     return signature(operations, bits, stock, design, float(voxel_mm))

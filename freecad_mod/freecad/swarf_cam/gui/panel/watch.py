@@ -3,6 +3,7 @@
 
 import FreeCAD
 
+from ...app import fixtures
 from ...app.accepted import ACCEPTED
 from ...app.setups import signature_steps
 from ..qt import QtCore
@@ -49,7 +50,11 @@ class JobWatch(QtCore.QObject):
 
     def remember_steps(self):
         """Steps after which changes are told from how the job is now."""
-        self._signature = yield from signature_steps(self._job, 1.0, self.known)
+        self._signature = yield from self._signature_steps()
+
+    def _signature_steps(self):
+        """Steps -> what the panel depends on: the checks want fixtures, of which the stock knows nothing."""
+        return (yield from signature_steps(self._job, 1.0, self.known)), fixtures.measures_of(self._job)
 
     def _stop_comparing(self):
         self._timer.stop()
@@ -58,7 +63,7 @@ class JobWatch(QtCore.QObject):
             self._slices = None
 
     def _compare(self):
-        self._slices = Slices(signature_steps(self._job, 1.0, self.known), self._compared, self)
+        self._slices = Slices(self._signature_steps(), self._compared, self)
 
     def _compared(self, signature, error):
         """An error: half way through an edit."""
