@@ -8,6 +8,7 @@ from typing import Any, Optional, Sequence
 
 from ._native import Mesh, Solid, Surface, deviation_colours
 from .job import Job
+from .progress import Report, share, told
 from .records import MOVE, SECTION, section_and_kind
 
 KINDS = ("operation", "deviation", "thickness")
@@ -25,29 +26,32 @@ EARLIER: RGB = (150, 158, 168)
 #: Least to greatest of a scale: thin is red, thick is blue.
 STOPS: Sequence[RGB] = ((184, 18, 31), (245, 133, 41), (252, 222, 102), (107, 204, 237), (41, 46, 158))
 
+#: Points whose distance is asked for at once: enough for all cores, a moment for who cancels.
+MIDDLES = 65536
+
 #: What deviations are tinted on: about as light as a face towards the viewer.
 LIT = (225, 225, 225, 255)
 
 
-def _corners(mesh: Mesh) -> list[list[list[float]]]:
-    vertices = mesh.vertices.tolist()
-    return [[vertices[vertex] for vertex in triangle] for triangle in mesh.triangles.tolist()]
+def _edges(triangle: Sequence[int]) -> list[tuple[int, int]]:
+    a, b, c = triangle
+    return [(min(edge), max(edge)) for edge in ((a, b), (b, c), (c, a))]
 
 
-def _fill(mesh: Mesh, colours: list[Optional[RGB]], otherwise: RGB) -> list[RGB]:
+def _fill(mesh: Mesh, colours: list[Optional[RGB]], otherwise: RGB, progress: Report) -> list[RGB]:
     """Triangles without a colour (slivers, whose normals may be any) take that of a neighbour, as far as it reaches."""
     unknown = [index for index, colour in enumerate(colours) if colour is None]
     triangles = mesh.triangles.tolist() if unknown else []
-    beside: dict[tuple[int, int], list[int]] = {}
-    for index, (a, b, c) in enumerate(triangles):
-        for edge in ((a, b), (b, c), (c, a)):
-            beside.setdefault((min(edge), max(edge)), []).append(index)
+    beside: dict[tuple[int, int], list[int]] = {edge: [] for index in unknown for edge in _edges(triangles[index])}
+    for index, triangle in told(enumerate(triangles), len(triangles), progress):
+        for edge in _edges(triangle):
+            if edge in beside:
+                beside[edge].append(index)
     while unknown:
         known: dict[int, RGB] = {}
         for index in unknown:
-            a, b, c = triangles[index]
-            for edge in ((a, b), (b, c), (c, a)):
-                near = [colours[other] for other in beside[min(edge), max(edge)] if colours[other] is not None]
+            for edge in _edges(triangles[index]):
+                near = [colours[other] for other in beside[edge] if colours[other] is not None]
                 if near and near[0] is not None:
                     known[index] = near[0]
                     break
@@ -59,11 +63,13 @@ def _fill(mesh: Mesh, colours: list[Optional[RGB]], otherwise: RGB) -> list[RGB]
     return [otherwise if colour is None else colour for colour in colours]
 
 
-def by_operation(mesh: Mesh, surface: Surface, job: Job, moves: Optional[int] = None) -> list[RGB]:
-    """A colour for each operation of the job, one for all earlier set-ups, one for what no move made."""
+def by_operation(mesh: Mesh, surface: Surface, job: Job, moves: Optional[int] = None,
+                 progress: Report = None) -> list[RGB]:
+    """A colour for each operation of the job, one for all earlier set-ups, one for what no move made. Cancelled."""
     records, sections = job.program.moves, job.program.sections
     colours: list[Optional[RGB]] = []
-    for set_up, move, *_ in mesh.origins(surface, moves=moves).tolist():
+    origins = mesh.origins(surface, moves=moves, progress=share(progress, 0, 0.5)).tolist()
+    for set_up, move, *_ in told(origins, len(origins), share(progress, 0.5, 0.75)):
         if move == -2:
             colours.append(None)
         elif move < 0 or set_up:
@@ -72,28 +78,37 @@ def by_operation(mesh: Mesh, surface: Surface, job: Job, moves: Optional[int] = 
             *_, section_kind = MOVE.unpack_from(records, move * MOVE.size)
             operation = SECTION.unpack_from(sections, section_and_kind(section_kind)[0] * SECTION.size)[1]
             colours.append(OPERATIONS[operation % len(OPERATIONS)])
-    return _fill(mesh, colours, FIRST_SHAPE)
+    return _fill(mesh, colours, FIRST_SHAPE, share(progress, 0.75, 1))
 
 
-def by_deviation(mesh: Mesh, design: Mesh, tolerance: float) -> list[RGB]:
+def by_deviation(mesh: Mesh, design: Mesh, tolerance: float, progress: Report = None) -> list[RGB]:
     """Green within the tolerance (mm), by yellow to red where material is left, by cyan to blue where it is missing; of
-    the middles of the triangles."""
-    middles = [[sum(corner[k] for corner in corners) / 3 for k in range(3)] for corners in _corners(mesh)]
-    values = array.array("d", Solid(design).distance(middles)) if middles else array.array("d")
-    if not values:
+    the middles of the triangles. Cancelled."""
+    if not mesh.triangle_count:
         return []
+    vertices, triangles = mesh.vertices.tolist(), mesh.triangles.tolist()
+    solid = Solid(design, progress=share(progress, 0, 0.2))
+    values, middles = array.array("d"), []
+    for a, b, c in told(triangles, len(triangles), share(progress, 0.2, 0.9)):
+        middles.append([sum(corner) / 3 for corner in zip(vertices[a], vertices[b], vertices[c])])
+        if len(middles) == MIDDLES:
+            values.extend(solid.distance(middles))
+            middles.clear()
+    if middles:
+        values.extend(solid.distance(middles))
     table = memoryview(values).cast("B").cast("d", (len(values), 1))
     tinted = deviation_colours(table, bytes(LIT) * len(values), tolerance)
     return [(tinted[i], tinted[i + 1], tinted[i + 2]) for i in range(0, len(tinted), 4)]
 
 
-def by_thickness(mesh: Mesh, most: Optional[float] = None) -> list[RGB]:
-    """Red where the wall is thinnest to blue where it is ``most`` mm or more (None: half the greatest extent)."""
-    values = mesh.thickness()
+def by_thickness(mesh: Mesh, most: Optional[float] = None, progress: Report = None) -> list[RGB]:
+    """Red where the wall is thinnest to blue where it is ``most`` mm or more (None: half the greatest extent).
+    Cancelled."""
+    values = mesh.thickness(progress=share(progress, 0, 0.8))
     box = mesh.bounding_box
     if most is None:
         most = max(hi - lo for lo, hi in zip(*box)) / 2 if box else 1.0
-    return [_scale(value / most) for value in values]
+    return [_scale(value / most) for value in told(values, len(values), share(progress, 0.8, 1))]
 
 
 def _scale(part: float) -> RGB:
@@ -103,16 +118,17 @@ def _scale(part: float) -> RGB:
     return r, g, b
 
 
-def make(kind: str, mesh: Mesh, surface: Optional[Surface], job: Any, tolerance: float = 0.05) -> list[RGB]:
-    """Colours of one of KINDS of the mesh of a simulated job. ValueError where what it needs is missing."""
+def make(kind: str, mesh: Mesh, surface: Optional[Surface], job: Any, tolerance: float = 0.05,
+         progress: Report = None) -> list[RGB]:
+    """Colours of one of KINDS of the mesh of a simulated job. ValueError where what it needs is missing; Cancelled."""
     if kind == "operation":
         if surface is None:
             raise ValueError("colours by operation need the exact surface")
-        return by_operation(mesh, surface, job)
+        return by_operation(mesh, surface, job, progress=progress)
     if kind == "deviation":
         if job.design is None:
             raise ValueError(f"{job.name}: colours by deviation need a design, and the job has none")
-        return by_deviation(mesh, job.design, tolerance)
+        return by_deviation(mesh, job.design, tolerance, progress)
     if kind == "thickness":
-        return by_thickness(mesh)
+        return by_thickness(mesh, progress=progress)
     raise ValueError(f"colours {kind!r}: wanted {', '.join(KINDS)}")

@@ -8,10 +8,11 @@ and only where something is loose.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Optional, Sequence
+from typing import Callable, Optional, Sequence
 
 from ._native import Lump, Stock
 from .job import Job, operation_of
+from .progress import Report, share
 
 #: Pieces of fewer voxels are crumbs: what a voxel between two passes leaves may be none.
 CRUMB_VOXELS = 27
@@ -45,39 +46,54 @@ class LoosePieces:
     crumbs: int = 0
 
 
-def _apart(stock: Stock, lumps: Sequence[Lump]) -> set[Lump]:
-    """Those that hang on none of the larger ones; the first is the largest, the part itself."""
-    _, places = stock.lumps([lump.inside for lump in lumps])
-    return {lump for index, lump in enumerate(lumps) if index and places[index] not in places[:index]}
+class _Search:
+    """Who freed the lumps of a stock, the largest first; freed: the move of each that is known."""
+
+    def __init__(self, job: Job, lumps: Sequence[Lump], progress: Report) -> None:
+        self._job, self._lumps, self._progress = job, lumps, progress
+        self._played, count = 0, len(job.program)
+        self._to_play = max(1, count * count.bit_length() // 2)  # at most: half of the program in each round
+        self.freed: dict[Lump, int] = {}
+
+    def apart(self, stock: Stock) -> set[Lump]:
+        """Those that hang on none of the larger ones; the first is the largest, the part itself."""
+        _, places = stock.lumps([lump.inside for lump in self._lumps], progress=self._part(0))
+        return {lump for index, lump in enumerate(self._lumps) if index and places[index] not in places[:index]}
+
+    def _part(self, count: int) -> Report:
+        begin, end = (min(1.0, played / self._to_play) for played in (self._played, self._played + count))
+        return share(self._progress, begin, end)
+
+    def between(self, stock: Stock, wanted: set[Lump], begin: int, end: int) -> None:
+        """The moves in begin .. end - 1 that free the wanted ones, which hang on a larger one before and on none after;
+        the stock has seen the moves before `begin`, and may be changed."""
+        if not wanted:
+            return
+        if end - begin == 1:
+            self.freed.update({lump: begin for lump in wanted})
+            return
+        middle = (begin + end) // 2
+        later = stock.copy()
+        later.simulate(self._job.program, self._job.tools, first=begin, count=middle - begin,
+                       progress=self._part(middle - begin))
+        self._played += middle - begin
+        apart = self.apart(later) & wanted
+        self.between(later, wanted - apart, middle, end)
+        self.between(stock, apart, begin, middle)
 
 
-def _freed_by(stock: Stock, job: Job, lumps: Sequence[Lump], wanted: set[Lump], begin: int, end: int,
-              freed: dict[Lump, int]) -> None:
-    """The moves in begin .. end - 1 that free the wanted ones of these lumps, which hang on a larger one before and on
-    none after; the stock has seen the moves before `begin`, and may be changed."""
-    if not wanted:
-        return
-    if end - begin == 1:
-        freed.update({lump: begin for lump in wanted})
-        return
-    middle = (begin + end) // 2
-    later = stock.copy()
-    later.simulate(job.program, job.tools, first=begin, count=middle - begin)
-    apart = _apart(later, lumps) & wanted
-    _freed_by(later, job, lumps, wanted - apart, middle, end, freed)
-    _freed_by(stock, job, lumps, apart, begin, middle, freed)
-
-
-def find(job: Job, left: Stock, make_first: Callable[[], Any]) -> LoosePieces:
-    """The loose pieces of what is `left` of a job's stock; make_first() gives the stock as it was first, where it is
-    needed."""
-    lumps, _ = left.lumps()
+def find(job: Job, left: Stock, make_first: Callable[[Report], Stock], progress: Report = None) -> LoosePieces:
+    """The loose pieces of what is `left` of a job's stock; make_first(progress) gives the stock as it was first,
+    where it is needed. Cancelled, and what make_first() raises."""
+    lumps, _ = left.lumps(progress=share(progress, 0, 0.1))
     pieces = [lump for lump in lumps[1:] if lump.voxels >= CRUMB_VOXELS][:MOST_PIECES]
     if not pieces:
         return LoosePieces(crumbs=max(0, len(lumps) - 1))
-    first, ordered = make_first(), [lumps[0], *pieces]
-    freed: dict[Lump, int] = {lump: -1 for lump in _apart(first, ordered)}
-    _freed_by(first, job, ordered, set(pieces) - set(freed), 0, len(job.program), freed)
+    first = make_first(share(progress, 0.1, 0.3))
+    search = _Search(job, [lumps[0], *pieces], share(progress, 0.3, 1))
+    freed = search.freed
+    freed.update({lump: -1 for lump in search.apart(first)})
+    search.between(first, set(pieces) - set(freed), 0, len(job.program))
     found = [Loose(lump, freed[lump], *(operation_of(job, freed[lump]) if freed[lump] >= 0 else (None, 0)))
              for lump in pieces]
     return LoosePieces(found, len(lumps) - 1 - len(found))

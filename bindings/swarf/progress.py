@@ -1,10 +1,33 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A progress bar for a terminal."""
+"""Progress of long work: shares of it, steps of loops, a bar for a terminal."""
 from __future__ import annotations
 
 import shutil
 import sys
-from typing import Optional, TextIO
+from typing import Any, Callable, Iterable, Iterator, Optional, TextIO, TypeVar
+
+from ._native import Cancelled
+
+T = TypeVar("T")
+
+#: Called with the fraction that is done; a true answer cancels, an exception cancels and comes out.
+Report = Optional[Callable[[float], Any]]
+
+#: Turns of a loop between two reports: some milliseconds.
+TURNS = 4096
+
+
+def share(progress: Report, begin: float, end: float) -> Report:
+    """The progress of a part of the work, from begin to end of the whole."""
+    return None if progress is None else lambda fraction: progress(begin + (end - begin) * fraction)
+
+
+def told(items: Iterable[T], count: int, progress: Report) -> Iterator[T]:
+    """The items of a loop, its progress told meanwhile; Cancelled."""
+    for number, item in enumerate(items):
+        if progress is not None and number % TURNS == 0 and progress(number / count):
+            raise Cancelled("cancelled by the progress callback")
+        yield item
 
 
 class Bar:

@@ -25,8 +25,8 @@ STOCK_SUFFIXES = (".vdb",)
 #: What a mesh may be off, in voxels, where nobody says: as much as the stock itself is at its edges.
 MESH_ERROR_VOXELS = 0.1
 
-#: Called with the stage ("stock", "cut", "compare", "mesh", "picture", "write") and the fraction of it that is done; a
-#: true answer cancels, an exception cancels and comes out.
+#: Called with the stage ("stock", "cut", "compare", "loose", "mesh", "picture", "write") and the fraction of it that is
+#: done; a true answer cancels, an exception cancels and comes out.
 Progress = Callable[[str, float], Any]
 
 
@@ -107,7 +107,7 @@ def simulate(
     if compare and job.design is not None:
         result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
     result.loose = timed("loose", lambda report: loose.find(
-        job, stock, lambda: make_stock(job.stock, voxel=stock.voxel)))
+        job, stock, lambda part: make_stock(job.stock, voxel=stock.voxel, progress=part), report))
     if exact is not None:
         result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
                                                                    progress=report))
@@ -117,7 +117,7 @@ def simulate(
         result.mesh = None if result.mesh is None else largest(whole)
     tints = None
     if colour is not None and result.mesh is not None:
-        tints = timed("mesh", lambda report: colours.make(colour, result.mesh, exact, job))
+        tints = timed("mesh", lambda report: colours.make(colour, result.mesh, exact, job, progress=report))
     for path in outputs:
         if output_suffix(path) in MESH_SUFFIXES:
             timed("write", lambda report: result.mesh.write(path, colors=tints, progress=report))

@@ -5,19 +5,18 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, field
-from typing import Any, Callable, Optional, Sequence
+from typing import Any, Optional, Sequence
 
 from ._native import Cutter, GeometryError, Mesh, Program, Simulation, Stock, Surface
 from .job import Job
 from .placement import IDENTITY, Box, Rows, box_of, direction, is_quarter, point, rows_of
+from .progress import Report, share
 
 #: Voxels along the longest edge of the stock where nobody says how fine: fast on any machine, and fine enough to see.
 DEFAULT_RESOLUTION = 512
 
 #: Set-ups in a row, so that a description that holds itself ends.
 MOST_SET_UPS = 100
-
-Report = Optional[Callable[[float], Any]]
 
 
 @dataclass
@@ -120,10 +119,6 @@ def _box_left(stock: Stock, surface: Optional[Surface], what: str) -> Box:
     return box
 
 
-def _share(progress: Report, begin: float, end: float) -> Report:
-    return None if progress is None else lambda fraction: progress(begin + (end - begin) * fraction)
-
-
 def _read_file(description: dict[str, Any], voxel: Optional[float], resolution: Optional[float],
                progress: Report) -> First:
     """Of a .vdb file, placed."""
@@ -142,15 +137,15 @@ def _play_before(description: dict[str, Any], voxel: Optional[float], depth: int
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")
     kept = description.get("path")
-    left = None if kept is None else Stock.read(kept, progress=_share(progress, 0, 0.3))
-    first = _make(job.stock, left.voxel if left is not None else voxel, None, depth + 1, _share(progress, 0.3, 0.5))
-    before = first.surface(job.program, job.tools)
+    left = None if kept is None else Stock.read(kept, progress=share(progress, 0, 0.3))
+    first = _make(job.stock, left.voxel if left is not None else voxel, None, depth + 1, share(progress, 0.3, 0.45))
+    before = first.surface(job.program, job.tools, progress=share(progress, 0.45, 0.5))
     if left is None:
         left = first.stock
-        first.played.append((job, left.simulate(job.program, job.tools, progress=_share(progress, 0.5, 0.8))))
+        first.played.append((job, left.simulate(job.program, job.tools, progress=share(progress, 0.5, 0.8))))
     rows = rows_of(description.get("placement", IDENTITY), lambda: _box_left(left, before, job.name))
     try:
-        stock = left.placed(rows, voxel=voxel, surface=before, progress=_share(progress, 0.8, 1))
+        stock = left.placed(rows, voxel=voxel, surface=before, progress=share(progress, 0.8, 1))
     except GeometryError as error:
         raise GeometryError(f"{job.name}: {error}") from None
     return First(stock, before, rows, first.played)

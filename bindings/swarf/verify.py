@@ -16,6 +16,7 @@ from .accept import Acceptance
 from .job import Job, operation_of
 from .loads import Limits
 from .records import MOVE
+from .progress import Report
 from .simulate import Progress, Result
 from .stocks import make_first
 
@@ -172,7 +173,7 @@ def verify(
                         limits=limits, region=region)
     found = [*findings_before(before), *findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
              *_design_findings(solid, first, mesh), *fixture_findings(first, clamps),
-             *_loose_findings(job, stock, first),
+             *timed("loose", lambda report: loose_findings(job, stock, first, report)),
              *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
     made.findings = settle(found, [*job.accepted, *accept])
     return made
@@ -239,9 +240,11 @@ def _end_of(job: Job, move: int) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _loose_findings(job: Job, left: Stock, first: Stock) -> list[Verdict]:
+def loose_findings(job: Job, left: Stock, first: Stock, progress: Report = None) -> list[Verdict]:
+    """Pieces of what is left of a job's stock that hang on nothing any more. Cancelled."""
     return [Verdict("warning", piece.text, "loose", piece.operation, piece.line, piece.move, piece.lump.inside,
-                    amount=piece.lump.volume_mm3, t=1.0) for piece in loose.find(job, left, first.copy).pieces]
+                    amount=piece.lump.volume_mm3, t=1.0) for piece in
+            loose.find(job, left, lambda _: first.copy(), progress).pieces]
 
 
 def _design_findings(solid: Solid, first: Stock, mesh: Mesh) -> list[Verdict]:

@@ -103,6 +103,22 @@ def test_loose_pieces_are_findings(job):
     assert found[1].amount == pytest.approx(7 * 10 * 5, rel=0.15) and found[1].place[0] > 20
 
 
+def test_who_looks_for_loose_pieces_can_be_cancelled(job):
+    told = []
+    swarf.simulate(job, voxel=0.5, compare=False, progress=lambda stage, done: told.append((stage, done)) and None)
+    fractions = [done for stage, done in told if stage == "loose"]
+    assert fractions == sorted(fractions) and 0 <= fractions[0] and fractions[-1] <= 1
+    assert any(0.3 < done < 1 for done in fractions)  # the search for the moves, not only the lumps
+    for wanted in (0.0, 0.11, 0.31, 0.5):
+        late = []
+        with pytest.raises(swarf.Cancelled):
+            swarf.simulate(job, voxel=0.5, progress=lambda stage, done: stage == "loose" and done >= wanted)
+        with pytest.raises(swarf.Cancelled):
+            swarf.verify(job, voxel=0.5, loads=False, progress=lambda stage, done: stage == "loose" and (
+                late.append(done) or done >= wanted))
+        assert sum(done >= wanted for done in late) == 1
+
+
 def test_loose_from_the_beginning(job):
     two = swarf.Stock.box((0, 0, -5), (10, 20, 0), VOXEL)
     other = swarf.Mesh.from_stock(swarf.Stock.box((12, 0, -5), (20, 20, 0), VOXEL))
@@ -150,6 +166,17 @@ def test_colours(done, job):
     with pytest.raises(ValueError, match="wanted operation"):
         colours.make("rainbow", done.mesh, None, job)
     assert math.isclose(sum(colours._scale(0.0)), sum(colours.STOPS[0]))
+
+
+@pytest.mark.parametrize("kind", colours.KINDS)
+def test_who_colours_can_be_cancelled(done, job, kind):
+    told = []
+    tints = colours.make(kind, done.mesh, done.surface, job, progress=told.append)
+    assert tints == colours.make(kind, done.mesh, done.surface, job)
+    assert told == sorted(told) and 0 <= told[0] and told[-1] <= 1
+    for wanted in sorted(set(told)):
+        with pytest.raises(swarf.Cancelled):
+            colours.make(kind, done.mesh, done.surface, job, progress=lambda part: part >= wanted)
 
 
 def test_lumps(done):

@@ -8,7 +8,8 @@ from typing import Any
 from . import native
 
 # Where each stage begins and how much of the whole it is, about.
-STAGES = {"design": (0.0, 0.05), "stock": (0.05, 0.15), "cut": (0.2, 0.55), "compare": (0.75, 0.25)}
+STAGES = {"design": (0.0, 0.05), "stock": (0.05, 0.15), "cut": (0.2, 0.55), "compare": (0.75, 0.2),
+          "loose": (0.95, 0.05)}
 
 
 @dataclass

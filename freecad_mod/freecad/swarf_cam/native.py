@@ -177,7 +177,8 @@ def estimate(lo, hi, voxel_mm):
 
 
 # Where each stage of swarf.simulate() begins and how much of the whole it is, about.
-STAGES = {"stock": (0.0, 0.1), "cut": (0.1, 0.5), "compare": (0.6, 0.2), "mesh": (0.8, 0.1), "write": (0.9, 0.1)}
+STAGES = {"stock": (0.0, 0.1), "cut": (0.1, 0.4), "compare": (0.5, 0.2), "loose": (0.7, 0.05), "mesh": (0.75, 0.1),
+          "write": (0.85, 0.05), "colours": (0.9, 0.1)}
 
 
 def _lines(findings, operations, begin=""):
@@ -210,7 +211,9 @@ def simulate(data, voxel_mm, folder, progress=None):
     findings += _lines(outcome.findings, names)
     findings += ["warning: operation '%s', command %d: %s" % (piece.operation or "-", piece.line, piece.text)
                  for piece in done.loose.pieces]
-    colours = importlib.import_module(swarf.__name__ + ".colours").make("operation", done.mesh, done.surface, done.job)
+    colours = importlib.import_module(swarf.__name__ + ".colours").make(
+        "operation", done.mesh, done.surface, done.job,
+        progress=(lambda fraction: report("colours", fraction)) if progress else None)
     return Result(
         stock_file, mesh_file, len(data.moves), list(names), list(outcome.removed_by_operation),
         outcome.volume_initial, outcome.volume_final, comparison.excess_mm3 if comparison else None,
@@ -231,13 +234,15 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, largest
     JobError where nothing is left, or no mesh is that small; swarf.Error, OSError.
     """
     swarf = load()
-    stocks, colours, parts = (importlib.import_module("%s.%s" % (swarf.__name__, name))
-                              for name in ("stocks", "colours", "parts"))
+    stocks, colours, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))
+                                      for name in ("stocks", "colours", "parts", "progress"))
+    share = functools.partial(shares.share, progress)
     job = to_job(data)
-    left = swarf.Stock.read(stock_file)
-    surface = stocks.make_first(job.stock, voxel=left.voxel).surface(job.program, job.tools)
+    left = swarf.Stock.read(stock_file, progress=share(0, 0.1))
+    first = stocks.make_first(job.stock, voxel=left.voxel, progress=share(0.1, 0.3))
+    surface = first.surface(job.program, job.tools, progress=share(0.3, 0.4))
     mesh = swarf.Mesh.from_stock(left, MESH_ERROR_VOXELS * left.voxel if error_mm is None else error_mm, budget=budget,
-                                 surface=surface, progress=progress)
+                                 surface=surface, progress=share(0.4, 0.8))
     if not mesh.triangle_count:
         raise JobError("nothing is left of the stock")
     if not mesh.contour.budget_met:
@@ -245,5 +250,6 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, largest
                        % mesh.triangle_count)
     if largest:
         mesh = parts.largest(mesh)
-    mesh.write(path, colors=colours.make(colour, mesh, surface, job) if colour else None)
+    tints = colours.make(colour, mesh, surface, job, progress=share(0.8, 0.95)) if colour else None
+    mesh.write(path, colors=tints, progress=share(0.95, 1))
     return mesh.triangle_count

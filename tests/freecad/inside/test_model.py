@@ -96,6 +96,16 @@ class TestModel(unittest.TestCase):
         self.assertLess(full / 2, model.export(self.obj, self.path("full.stl"), error_mm=0))
         self.assertEqual(model.estimate(self.obj, ".vdb", 0)[1], os.path.getsize(self.obj.Stock))
 
+    def test_cancelled_at_any_time(self):
+        told = []
+        model.export(self.obj, self.path("whole.ply"), told.append, colour="operation")
+        self.assertEqual(told, sorted(told))
+        self.assertTrue(0 <= told[0] and told[-1] <= 1)
+        for wanted in (0.0, 0.15, 0.35, 0.6, 0.85, told[-1]):
+            with self.assertRaises(native.load().Cancelled):
+                model.export(self.obj, self.path("part.ply"), lambda done: done >= wanted, colour="operation")
+            self.assertFalse(os.path.exists(self.path("part.ply")))
+
     def test_fixtures_leave_the_result_alone(self):
         clamp = self.document.addObject("Part::Feature", "Clamp")
         clamp.Shape = Part.makeBox(5, 5, 20, FreeCAD.Vector(40, 0, -10))
