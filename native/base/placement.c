@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "swarf/placement.h"
+#include "base/placement.h"
 
 #include "base/status.h"
 
@@ -42,29 +42,38 @@ static void mend(double rows[3][3])
     cross(rows[0], rows[1], rows[2]);
 }
 
+swarf_status swarf_placement_check(const swarf_placement *placement)
+{
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 4; k++)
+            SWARF_REQUIRE(isfinite(k < 3 ? placement->rotation[i][k] : placement->shift[i]),
+                          "placement: row %d, column %d is not finite", i, k);
+        for (int k = 0; k <= i; k++) {
+            const double wanted = i == k, found = dot(placement->rotation[k], placement->rotation[i]);
+            SWARF_REQUIRE(fabs(found - wanted) <= mended,
+                          "placement: rows %d and %d of the rotation have the product %g where a rotation has %g: it "
+                          "skews or scales",
+                          k, i, found, wanted);
+        }
+    }
+    double third[3];
+    cross(placement->rotation[0], placement->rotation[1], third);
+    SWARF_REQUIRE(dot(third, placement->rotation[2]) > 0, "placement: it mirrors; a part can only be turned and moved");
+    return SWARF_OK;
+}
+
 swarf_status swarf_placement_create(const double rows[12], swarf_placement *out)
 {
     SWARF_REQUIRE(rows && out, "placement: NULL");
     swarf_placement made = {0};
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 4; k++)
-            SWARF_REQUIRE(isfinite(rows[4 * i + k]), "placement: row %d, column %d is not finite", i, k);
         memcpy(made.rotation[i], rows + 4 * i, sizeof made.rotation[i]);
         made.shift[i] = rows[4 * i + 3];
+    }
+    SWARF_TRY(swarf_placement_check(&made));
+    for (int i = 0; i < 3; i++)
         SWARF_REQUIRE(fabs(made.shift[i]) <= farthest, "placement: shifted by %g mm in %c; up to %g are possible",
                       made.shift[i], "xyz"[i], farthest);
-    }
-    for (int i = 0; i < 3; i++)
-        for (int k = i; k < 3; k++) {
-            const double wanted = i == k, found = dot(made.rotation[i], made.rotation[k]);
-            SWARF_REQUIRE(fabs(found - wanted) <= mended,
-                          "placement: rows %d and %d of the rotation have the product %g where a rotation has %g: it "
-                          "skews or scales",
-                          i, k, found, wanted);
-        }
-    double third[3];
-    cross(made.rotation[0], made.rotation[1], third);
-    SWARF_REQUIRE(dot(third, made.rotation[2]) > 0, "placement: it mirrors; a part can only be turned and moved");
     mend(made.rotation);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
@@ -103,7 +112,12 @@ int swarf_placement_quarters(const swarf_placement *placement, int axis[3], int 
         const double *row = placement->rotation[k];
         while (found[k] < 3 && row[found[k]] == 0) found[k]++;
         if (found[k] == 3 || fabs(row[found[k]]) != 1) return 0;
+        for (int other = found[k] + 1; other < 3; other++)
+            if (row[other] != 0) return 0;
     }
+    double third[3];
+    cross(placement->rotation[0], placement->rotation[1], third);
+    if (dot(third, placement->rotation[2]) != 1) return 0; /* two rows along one axis, or a mirror */
     for (int k = 0; k < 3; k++) {
         axis[k] = found[k];
         sign[k] = placement->rotation[k][found[k]] > 0 ? 1 : -1;

@@ -3,6 +3,7 @@
  * by the mesh: its vertices are turned, and the new voxels get their exact distance to it, so that edges stay edges.
  * Interpolating the old voxels would round them: half way between four voxels round an edge, trilinear values are a
  * quarter of a voxel off. */
+#include "base/placement.h"
 #include "base/status.h"
 #include "mesh/mesh.h"
 #include "stock/turn.h"
@@ -32,6 +33,7 @@ static int report_share(void *context, double fraction)
 swarf_status swarf_mesh_create_placed(const swarf_mesh *mesh, const swarf_placement *placement, swarf_mesh **out)
 {
     SWARF_REQUIRE(mesh && placement && out, "mesh: NULL");
+    SWARF_TRY(swarf_placement_check(placement));
     swarf_triangles t = swarf_mesh_triangles(mesh);
     float *xyz = malloc((3 * t.vertex_count + 1) * sizeof *xyz);
     if (!xyz) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for %zu vertices", t.vertex_count);
@@ -83,6 +85,7 @@ swarf_status swarf_stock_place(swarf_stock *stock, const swarf_placement *placem
                                const swarf_progress *progress, swarf_stock **out, int *lossless)
 {
     SWARF_REQUIRE(stock && placement && out, "stock: NULL");
+    SWARF_TRY(swarf_placement_check(placement));
     const swarf_place_options none = swarf_place_options_default();
     if (!options) options = &none;
     SWARF_REQUIRE(options->size == sizeof *options, "stock: options of another version");

@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/placement.h"
 #include "base/status.h"
 #include "stock/stock.h"
 
@@ -228,6 +229,7 @@ swarf_status swarf_surface_create_next(const swarf_surface *before, size_t moves
 {
     SWARF_REQUIRE(before && placement && program && out && (tools || tool_count == 0),
                   "surface: the set-up before, placement, program or tools missing");
+    SWARF_TRY(swarf_placement_check(placement));
     const size_t all = swarf_program_move_count(before->program);
     const swarf_surface from = {.before = (swarf_surface *)before, /* only its count changes */
                                 .before_moves = moves < all ? moves : all,

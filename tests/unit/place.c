@@ -345,7 +345,7 @@ static void check_chain(const double angle[3], int lossless)
 
 static void check_errors(void)
 {
-    swarf_placement placement;
+    swarf_placement placement = swarf_placement_identity();
     double rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};
     CHECK_FAILS(swarf_placement_create(rows, &placement), SWARF_ERROR_ARGUMENT, "mirrors");
     rows[10] = 1.1;
@@ -359,6 +359,31 @@ static void check_errors(void)
     swarf_stock *stock = make_block(1), *placed = NULL;
     const swarf_placement turn = make_placement((double[]){0, 0, 0.3}, (double[]){0, 0, 0});
     swarf_place_options options = swarf_place_options_default();
+    /* filled by hand: refused wherever one goes in, and no quarter turn */
+    const swarf_placement bad[4] = {{.rotation = {{1, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
+                                    {.rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}},
+                                    {.rotation = {{1, 0, 0.5}, {0, 1, 0}, {0, 0, 1}}},
+                                    {.rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .shift = {0, NAN, 0}}};
+    const char *const why[4] = {"rows 0 and 1", "mirrors", "rows 0 and 0", "row 1, column 3 is not finite"};
+    job cut = first_job();
+    swarf_surface *surface = NULL, *next = NULL;
+    CHECK_OK(swarf_surface_create(stock, cut.program, &cut.tool, 1, NULL, &surface));
+    swarf_mesh *mesh = NULL, *moved = NULL;
+    const float corner[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const uint32_t index[3] = {0, 1, 2};
+    CHECK_OK(swarf_mesh_create(&(swarf_triangles){corner, 3, index, 1}, &mesh));
+    for (int i = 0; i < 4; i++) {
+        int axis[3] = {7, 7, 7}, sign[3] = {7, 7, 7};
+        if (i < 3) CHECK(!swarf_placement_quarters(&bad[i], axis, sign) && axis[0] == 7 && sign[0] == 7);
+        CHECK_FAILS(swarf_stock_place(stock, &bad[i], NULL, NULL, &placed, NULL), SWARF_ERROR_ARGUMENT, why[i]);
+        CHECK_FAILS(swarf_surface_create_next(surface, 0, &bad[i], cut.program, &cut.tool, 1, NULL, &next),
+                    SWARF_ERROR_ARGUMENT, why[i]);
+        CHECK_FAILS(swarf_mesh_create_placed(mesh, &bad[i], &moved), SWARF_ERROR_ARGUMENT, why[i]);
+    }
+    CHECK(!placed && !next && !moved);
+    swarf_mesh_release(mesh);
+    swarf_surface_release(surface);
+    end_job(&cut);
     options.voxel_mm = -1;
     CHECK_FAILS(swarf_stock_place(stock, &turn, &options, NULL, &placed, NULL), SWARF_ERROR_ARGUMENT, "voxel size -1");
     options.voxel_mm = 0.001;
