@@ -245,7 +245,9 @@ const char mesh_thickness_doc[] =
     "thickness($self, *, progress=None)\n--\n\n"
     "Thickness of the wall behind each triangle, mm: a read-only float32 view, the least of four rays straight into "
     "the\n"
-    "material, from the triangle's middle and near its corners, to where the material ends; inf where there is no end.";
+    "material, from the triangle's middle and near its corners, to a face within 60 degrees of opposite; inf where "
+    "there\n"
+    "is none.";
 
 PyObject *mesh_thickness(PyObject *self, PyObject *args, PyObject *keywords)
 {

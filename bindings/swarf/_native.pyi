@@ -657,8 +657,8 @@ class Mesh:
         closed Meshes with caps, empty where there is nothing. GeometryError: the mesh is open."""
     def thickness(self, *, progress: Progress = None) -> memoryview:
         """Thickness of the wall behind each triangle, mm: a read-only float32 view, the least of four rays straight into
-        the material, from the triangle's middle and near its corners, to where the material ends; inf where there is no
-        end."""
+        the material, from the triangle's middle and near its corners, to a face within 60 degrees of opposite; inf where
+        there is none."""
     def placed(self, placement: Table, /) -> Mesh:
         """The mesh turned and moved, as a new Mesh: ``placement`` is three rows of rotation and shift (mm)."""
     def origins(

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Wall thickness along rays: from a triangle straight into the material, to where it ends. Of the two usual
- * definitions, ray and largest inscribed ball, the ray's is taken: near an edge the ball's goes to nothing however
- * thick the part is. */
+/* Wall thickness along rays: from a triangle straight into the material, to where it ends at a face that lies opposite.
+ * Of the two usual definitions, ray and largest inscribed ball, the ray's is taken: near an edge the ball's goes to
+ * nothing however thick the part is. A ray that leaves by a face across it has only met the other side of an edge, as
+ * beside the rim of a draft: that is no wall. */
 #include "base/parallel.h"
 #include "base/status.h"
 #include "mesh/mesh.h"
@@ -15,6 +16,8 @@
  * and thickest; and how near. */
 enum { RAYS = 4, TRIANGLES = SWARF_PACKET / RAYS, PACKETS_AT_ONCE = 256 };
 static const double corner_weight = 0.98;
+/* Cosine of the ray and the face it leaves by: edges of 60 degrees and more are none of a wall. */
+static const double opposite = 0.5;
 
 typedef struct measuring {
     swarf_triangles t;
@@ -50,6 +53,14 @@ static int aim(const measuring *m, size_t triangle, swarf_rays *rays, unsigned f
     return 1;
 }
 
+/* The hit's normal is turned towards the ray. */
+static int lies_opposite(const swarf_rays *rays, unsigned r)
+{
+    double along = 0;
+    for (int k = 0; k < 3; k++) along -= (double)rays->normal[k][r] * rays->direction[k][r];
+    return along > opposite;
+}
+
 static void measure_packet(const measuring *m, size_t first)
 {
     swarf_rays rays = {0};
@@ -62,7 +73,7 @@ static void measure_packet(const measuring *m, size_t first)
     for (unsigned i = 0; i < TRIANGLES && first + i < m->t.triangle_count; i++) {
         double least = INFINITY;
         for (unsigned r = RAYS * i; r < RAYS * (i + 1); r++)
-            if (hits >> r & 1) least = fmin(least, rays.distance[r] + m->inset);
+            if (hits >> r & 1 && lies_opposite(&rays, r)) least = fmin(least, rays.distance[r] + m->inset);
         m->out[first + i] = (float)least;
     }
 }

@@ -236,6 +236,37 @@ static void check_thickness(void)
     swarf_mesh_release(mesh);
 }
 
+/* A block 50 mm wide, its sides drafted by 2 degrees and parted into strips: under its upper rim, where a side and the
+ * top meet at 88 degrees, rays from the strips soon leave by the top. No wall is thinner than the block is high. */
+static void check_draft(void)
+{
+    enum { STRIPS = 40 };
+    const double high = 8, lean = tan(2 * pi / 180);
+    shape s = {0};
+    for (int ring = 0; ring <= STRIPS; ring++) {
+        const double z = high * ring / STRIPS, half = 25 + lean * z;
+        for (int i = 0; i < 4; i++) shape_vertex(&s, i == 1 || i == 2 ? half : -half, i > 1 ? half : -half, z);
+    }
+    for (size_t ring = 0; ring < STRIPS; ring++)
+        for (size_t i = 0; i < 4; i++) {
+            const size_t a = 4 * ring + i, b = 4 * ring + (i + 1) % 4;
+            shape_triangle(&s, a, b, b + 4);
+            shape_triangle(&s, a, b + 4, a + 4);
+        }
+    const size_t top = 4 * STRIPS;
+    shape_triangle(&s, 0, 2, 1);
+    shape_triangle(&s, 0, 3, 2);
+    shape_triangle(&s, top, top + 1, top + 2);
+    shape_triangle(&s, top, top + 2, top + 3);
+    swarf_mesh *mesh = mesh_of(&s);
+    CHECK(swarf_mesh_topology(mesh).closed && swarf_mesh_topology(mesh).volume_mm3 > 0);
+    float *found = thickness_of(mesh), least = INFINITY;
+    for (size_t i = 0; i < swarf_mesh_triangles(mesh).triangle_count; i++) least = fminf(least, found[i]);
+    CHECK_NEAR((double)least, high, 1e-3);
+    free(found);
+    swarf_mesh_release(mesh);
+}
+
 /* ---- lumps ---- */
 
 static void check_lumps(void)
@@ -289,6 +320,7 @@ int main(void)
     check_plate();
     check_errors();
     check_thickness();
+    check_draft();
     check_lumps();
     return test_end();
 }

@@ -140,8 +140,9 @@ SWARF_API swarf_status swarf_mesh_split(const swarf_mesh *mesh, const double poi
                                         swarf_mesh **below, swarf_mesh **above);
 
 /** Thickness of the wall behind each triangle, in mm: the least of four rays straight into the material, from its
- * middle and near its corners, to where the material ends. INFINITY: nowhere, or a triangle without area. `out`: one
- * per triangle. */
+ *  middle and near its corners, to where it ends at a face within 60 degrees of opposite; a ray that ends elsewhere,
+ *  beside an edge, tells of no wall. INFINITY: none of them does, or a triangle without area. `out`: one per triangle.
+ */
 SWARF_API swarf_status swarf_mesh_thickness(const swarf_mesh *mesh, const swarf_progress *progress, float *out);
 
 /** The curves along which a plane cuts a mesh, as polylines. Owned by the caller; immutable. */
