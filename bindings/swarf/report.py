@@ -92,7 +92,8 @@ def make(
         "volume_mm3": {
             "initial": simulation.volume_initial,
             "removed": simulation.volume_initial - simulation.volume_final,
-            "final": simulation.volume_final,
+            "loose_dropped": result.dropped_mm3,
+            "final": simulation.volume_final - result.dropped_mm3,
         },
         "removed_mm3_by_operation": removed,
         "memory_peak_mb": round(_native.memory_peak() / 1e6, 3),

@@ -25,7 +25,7 @@ STOCK_SUFFIXES = (".vdb",)
 #: What a mesh may be off, in voxels, where nobody says: as much as the stock itself is at its edges.
 MESH_ERROR_VOXELS = 0.1
 
-#: Called with the stage ("stock", "cut", "compare", "loose", "mesh", "picture", "write") and the fraction of it that is
+#: Called with the stage ("stock", "cut", "loose", "mesh", "compare", "picture", "write") and the fraction of it that is
 #: done; a true answer cancels, an exception cancels and comes out.
 Progress = Callable[[str, float], Any]
 
@@ -43,6 +43,7 @@ class Result:
     before: list[tuple[Job, Simulation]] = field(default_factory=list)  #: of the set-ups before, the first one first
     surface: Optional[Surface] = None  #: exact, where a mesh was made
     loose: loose.LoosePieces = field(default_factory=loose.LoosePieces)  #: what hangs on nothing any more
+    dropped_mm3: float = 0.0  #: of it, where it was left out
 
     @property
     def failed(self) -> bool:
@@ -74,7 +75,7 @@ def simulate(
     Stock.simulate(). The stock is compared with the design when the job has one. A mesh is made when ``mesh`` is true
     or an output needs it; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file.
     ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by. Pieces that come loose are in
-    the result, with the moves that free them; ``drop_loose`` leaves them out of mesh and files. Seconds of each stage
+    the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. Seconds of each stage
     are in the result. Raises what the stages raise; nothing is written before the cutting is done.
     """
     if len(job.program) == 0:
@@ -95,17 +96,16 @@ def simulate(
     started = time.perf_counter()
     first = timed("stock", lambda report: make_first(job.stock, voxel=voxel, resolution=resolution, progress=report))
     stock = first.stock
-    scene = None
+    scene = uncut = None
     if picture is not None:  # before the cut: the exact surface begins with the stock as it was
         scene = Scene(stock)
         timed("stock", lambda report: scene.set_surface(stock, job.program, job.tools, progress=report))
+        uncut = stock.copy() if drop_loose else None
     exact = None
     if mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs):
         exact = timed("stock", lambda report: first.surface(job.program, job.tools, progress=report))
     simulation = timed("cut", lambda report: stock.simulate(job.program, job.tools, batch=batch, progress=report))
     result = Result(job, stock, simulation, seconds=seconds, before=first.played, surface=exact)
-    if compare and job.design is not None:
-        result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
     result.loose = timed("loose", lambda report: loose.find(
         job, stock, lambda part: make_stock(job.stock, voxel=stock.voxel, progress=part), report))
     if exact is not None:
@@ -115,6 +115,12 @@ def simulate(
         whole = Mesh.from_stock(stock) if result.mesh is None else result.mesh
         result.stock = stock = timed("mesh", lambda report: Stock.from_mesh(largest(whole), stock.voxel, progress=report))
         result.mesh = None if result.mesh is None else largest(whole)
+        result.dropped_mm3 = simulation.volume_final - stock.volume()
+        if scene is not None:
+            scene = Scene(stock)
+            timed("mesh", lambda report: scene.set_surface(uncut, job.program, job.tools, progress=report))
+    if compare and job.design is not None:
+        result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
     tints = None
     if colour is not None and result.mesh is not None:
         tints = timed("mesh", lambda report: colours.make(colour, result.mesh, exact, job, progress=report))

@@ -167,7 +167,6 @@ def verify(
     deviation = timed("compare", lambda report: measure_deviation(
         stock, solid, excess=tolerances[0], gouge=tolerances[1], allowance=allowance, region=region, first=first,
         program=job.program, tools=job.tools, progress=report))
-    seconds["total"] = time.perf_counter() - started
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits, region=region)
@@ -176,6 +175,7 @@ def verify(
              *timed("loose", lambda report: loose_findings(job, stock, first, report)),
              *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
     made.findings = settle(found, [*job.accepted, *accept])
+    seconds["total"] = time.perf_counter() - started
     return made
 
 

@@ -215,6 +215,6 @@ def test_job_simulate(slot, cutter, tmp_path):
     assert result.stock.voxel == pytest.approx(0.5)
     assert not result.failed
     assert result.comparison.gouge_mm3 == pytest.approx(SLOT_MM3, rel=0.05)
-    assert {"stock", "cut", "compare", "mesh", "write", "picture", "total"} == set(result.seconds)
+    assert {"stock", "cut", "loose", "compare", "mesh", "write", "picture", "total"} == set(result.seconds)
     assert {path.name for path in tmp_path.iterdir()} == {"a.stl", "a.vdb", "a.png"}
     assert all(0 <= fraction <= 1 for _, fraction in stages)

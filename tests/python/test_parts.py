@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Meshes in parts: split by planes, wall thickness, loose pieces and who freed them, colours of triangles."""
+import importlib
 import json
 import math
 
 import pytest
 
 import swarf
-from swarf import colours, parts, stocks
+from swarf import colours, parts, report, stocks
 from swarf.cli import main
 from swarf.job import Job
 
@@ -135,7 +136,12 @@ def test_drop(job, tmp_path, capsys):
     kept = swarf.simulate(job, voxel=VOXEL, drop_loose=True, outputs=[str(tmp_path / "part.vdb")])
     assert len(kept.stock.lumps()[0]) == 1 and len(kept.mesh.shells()) == 1
     assert kept.mesh.volume == pytest.approx(14 * 20 * 5, rel=1e-3)
-    assert swarf.Stock.read(tmp_path / "part.vdb").volume() == pytest.approx(14 * 20 * 5, rel=1e-2)
+    left = swarf.Stock.read(tmp_path / "part.vdb").volume()
+    assert left == pytest.approx(14 * 20 * 5, rel=1e-2)
+    assert kept.comparison.excess_mm3 + kept.comparison.gouge_mm3 < 0.01 * left  # the design is what is kept
+    told = report.make(kept, "job")["volume_mm3"]
+    assert told["final"] == pytest.approx(left) and told["loose_dropped"] > 7 * 10 * 4
+    assert told["initial"] - told["removed"] - told["loose_dropped"] == pytest.approx(told["final"])
     program = tmp_path / "cut.nc"
     program.write_text(PROGRAM)
     status = main(["simulate", str(program), "--stock", "box:0,0,-5,30,20,0", "--tool", "1=flat:d=2,l=20", "--voxel", "0.25",
@@ -143,8 +149,31 @@ def test_drop(job, tmp_path, capsys):
                    "--report", str(tmp_path / "report.json")])
     assert status == 0 and "line 9: a piece of" in capsys.readouterr().err
     assert swarf.Mesh.read(tmp_path / "part.ply").volume == pytest.approx(14 * 20 * 5, rel=1e-3)
-    report = json.loads((tmp_path / "report.json").read_text())
-    assert [piece["line"] for piece in report["loose_pieces"]] == [9, 14]
+    made = json.loads((tmp_path / "report.json").read_text())
+    assert [piece["line"] for piece in made["loose_pieces"]] == [9, 14]
+
+
+def test_what_is_dropped_is_not_in_the_picture(job, tmp_path, monkeypatch):
+    """The picture is of what is kept, as that of a stock that never had more."""
+    pictures = []
+
+    class Recorded:
+        def __init__(self, stock):
+            self._scene = swarf.Scene(stock)
+            self.set_surface = self._scene.set_surface
+
+        def render(self, *words, **named):
+            pictures.append(self._scene.render(*words, **named))
+            return pictures[-1]
+
+    monkeypatch.setattr(importlib.import_module("swarf.simulate"), "Scene", Recorded)
+    for hi, drop in ((HI, True), ((14.0, 20.0, 0.0), False), (HI, False)):
+        stock = {"kind": "box", "lo": LO, "hi": hi}
+        swarf.simulate(Job(name="job", program=job.program, tools=job.tools, stock=stock), voxel=VOXEL, mesh=False,
+                       drop_loose=drop, picture=str(tmp_path / f"{len(pictures)}.png"), picture_size=(200, 150))
+    kept, never, whole = (bytes(picture.rgba) for picture in pictures)
+    same, other = (sum(abs(a - b) > 30 for a, b in zip(kept, picture)) / len(kept) for picture in (never, whole))
+    assert same < 0.01 and other > 0.1, (same, other)
 
 
 def test_colours(done, job):

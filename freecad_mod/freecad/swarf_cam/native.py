@@ -177,7 +177,7 @@ def estimate(lo, hi, voxel_mm):
 
 
 # Where each stage of swarf.simulate() begins and how much of the whole it is, about.
-STAGES = {"stock": (0.0, 0.1), "cut": (0.1, 0.4), "compare": (0.5, 0.2), "loose": (0.7, 0.05), "mesh": (0.75, 0.1),
+STAGES = {"stock": (0.0, 0.1), "cut": (0.1, 0.4), "loose": (0.5, 0.05), "mesh": (0.55, 0.1), "compare": (0.65, 0.2),
           "write": (0.85, 0.05), "colours": (0.9, 0.1)}
 
 
