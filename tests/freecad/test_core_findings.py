@@ -127,6 +127,36 @@ def test_stopping_at_the_first_error(swarf):
     assert not whole.stopped and whole.deviation is not None and told == sorted(told)
 
 
+def test_an_error_that_is_accepted_stops_nothing(swarf):
+    from swarf_cam import checks
+
+    for design in (None, box_mesh(LO, HI)):
+        data, _ = make(design)
+        data.accepted = [{"reason": "it is air there", "kind": "rapid"}]
+        job = native.to_job(data)
+        outcome = checks.run(job, 0.5, 0.05, lambda done: False, stop=True)
+        assert not outcome.stopped and (outcome.deviation is not None) == (design is not None)
+        assert [item.accepted for item in outcome.verdicts if item.kind == "rapid"] == ["it is air there"]
+        whole = checks.run(job, 0.5, 0.05, lambda done: False)
+        assert [item.text for item in outcome.verdicts] == [item.text for item in whole.verdicts]
+
+
+def test_loose_pieces_are_found_without_a_design(swarf):
+    from swarf_cam import checks
+
+    data, listing = make()
+    assert not [item for item in run(data, listing) if item.kind == "loose"]
+    # through the block, across
+    operations = data.operations
+    operations[1] = program.Operation("Slot", [Command(line) for line in (
+        "G0 X10 Y-5 Z5", "G0 Z-12", "G1 Y30 F10", "G0 Z5")], 1, "a")
+    data.moves = program.build(operations)
+    listing = Listing(data.moves, operations)
+    loose, = [item for item in run(data, listing) if item.kind == "loose"]
+    assert listing.operations[loose.operation].name == "Slot" and loose.severity == "warning"
+    assert checks.run(native.to_job(data), 0.5, 0.05, lambda done: False, stop=True).stopped
+
+
 def test_an_acceptance_knows_its_finding_and_no_worse_one(swarf):
     from swarf_cam import checks
 

@@ -28,13 +28,14 @@ class Outcome:
 
 
 def run(job, voxel_mm, tolerance_mm, progress, stop=False, clearance_mm=0.0):
-    """Outcome of a swarf.Job; what its document accepts is accepted. stop: at the first error.
+    """Outcome of a swarf.Job; what its document accepts is accepted. stop: at the first error, unless that is accepted:
+    the rest is then looked at as without it.
 
     progress as in native.simulate(). MemoryError, swarf.Error.
     """
     if stop:
-        outcome = _check(job, voxel_mm, [], _stages(progress, 0.0, 0.5), True, clearance_mm)
-        if outcome.stopped or job.design is None:
+        outcome, ended = _check(job, voxel_mm, [], _stages(progress, 0.0, 0.5), True, clearance_mm)
+        if outcome.stopped or (job.design is None and ended):
             return outcome
     swarf, report, doubts = native.load(), _stages(progress, 0.5 if stop else 0.0, 1.0), []
     if job.design is not None:
@@ -44,7 +45,7 @@ def run(job, voxel_mm, tolerance_mm, progress, stop=False, clearance_mm=0.0):
             return Outcome(made.findings, made)
         except swarf.GeometryError as error:
             doubts.append(_doubt(str(error)))
-    return _check(job, voxel_mm, doubts, report, False, clearance_mm)
+    return _check(job, voxel_mm, doubts, report, False, clearance_mm)[0]
 
 
 def _stages(progress, first, last):
@@ -62,19 +63,25 @@ def _doubt(text):
 
 
 def _check(job, voxel_mm, doubts, report, stop, clearance_mm):
+    """Outcome without a design, and whether the program was played to its end."""
     swarf = native.load()
     from swarf.stocks import make_first
-    from swarf.verify import findings_before, findings_of, fixture_findings, settle
+    from swarf.verify import findings_before, findings_of, fixture_findings, loose_findings, settle
 
-    first = make_first(job.stock, voxel=voxel_mm, progress=lambda done: report("stock", done))
-    stock = first.stock
+    made = make_first(job.stock, voxel=voxel_mm, progress=lambda done: report("stock", done))
+    stock = made.stock
+    first = stock.copy() if not stop or job.design is None else None  # else swarf.verify() follows, and looks itself
     clamps = [swarf.Solid(fixture) for fixture in job.fixtures]
-    doubts += findings_before(first.played) + fixture_findings(stock, clamps)
+    doubts += findings_before(made.played) + fixture_findings(stock, clamps)
     checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=clearance_mm, teeth=job.teeth, stop=stop,
                           progress=lambda done: report("cut", done))
+    ended = not (stop and any(item.severity == "error" for item in checked.findings))
     found = findings_of(job, checked, voxel_mm)
-    stopped = stop and any(item.severity == "error" for item in checked.findings)
-    return Outcome(settle(doubts + found, job.accepted), stopped=stopped)
+    if ended and first is not None:
+        found += loose_findings(job, stock, first, lambda done: report("loose", done))
+    verdicts = settle(doubts + found, job.accepted)
+    serious = any(verdict.severity == "error" and verdict.accepted is None for verdict in verdicts)
+    return Outcome(verdicts, stopped=not ended and serious), ended
 
 
 def judge(outcome, tolerance_mm, progress):
