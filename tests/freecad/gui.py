@@ -25,6 +25,15 @@ def menu_texts():
     return found
 
 
+def cancel_at_last(opened):
+    """Cancel when the thread is through, and the panel has not heard of it yet."""
+    wait_for(lambda: opened.worker is not None, "the thread")
+    opened.worker.join(60)
+    opened.reject()
+    wait_for(lambda: not opened.working, "cancel")
+    assert "ancelled" in opened.message.text() and not opened.closed, opened.message.text()
+
+
 def check_export(obj):
     """The panel, its estimates, a coloured file, and an error told in it."""
     from freecad.swarf_cam.gui import exporting
@@ -42,6 +51,10 @@ def check_export(obj):
     opened.start(os.path.join(OUT, "no", "folder.ply"))
     wait_for(lambda: not opened.working, "a folder that is not there")
     assert "folder.ply" in opened.message.text(), opened.message.text()
+    shape = os.path.join(OUT, "stock.brep")
+    opened.start(shape)
+    cancel_at_last(opened)
+    assert not os.path.exists(shape)
     path = os.path.join(OUT, "stock.ply")
     opened.start(path)
     wait_for(lambda: opened.closed, "export")
@@ -54,7 +67,7 @@ def check_next(document, first):
     """The panel of a second job offers what the first one left, and how it may lie."""
     import samples
     from freecad.swarf_cam.app import setups, simulation
-    from freecad.swarf_cam.gui import task as panel
+    from freecad.swarf_cam.gui import commands, task as panel
 
     controller = samples.add_controller(document, 1, samples.end_mill(), CuttingEdgeHeight=20.0)
     across = samples.add_operation(document, "Across", controller, "G0 X15 Y-5 Z-3", "G1 Y25 F10")
@@ -72,6 +85,18 @@ def check_next(document, first):
     assert setups.previous_of(job) is first
     second, = [item for item in document.Objects if simulation.is_simulation(item) and item is not first]
     assert second.UpToDate and abs(second.VolumeInitial.Value - first.VolumeFinal.Value) < 1
+    Gui.Selection.clearSelection()
+    Gui.Selection.addSelection(document.Name, first.Name)
+    assert commands.chosen_job() is first.Job, "the simulation's own job, not the one that cuts its result"
+    Gui.Selection.clearSelection()
+    mine, first.Job = first.Job, None
+    opened = panel.show_panel(job, second, start=True)
+    wait_for(lambda: not opened.working, "refusal of a set-up that is gone")
+    assert "no job" in opened.message.text() and opened.stock.lie.count() == 1, opened.message.text()
+    assert setups.previous_of(job) is first, "nobody wanted another stock"
+    screenshot("lost.png")
+    opened.close()
+    first.Job = mine
     for hidden in (job.Stock, *job.Tools.Group, first):
         hidden.ViewObject.Visibility = False
     screenshot("second.png")
@@ -130,6 +155,9 @@ def check():
         assert not [obj for obj in document.Objects if simulation.is_simulation(obj)], "cancelled, but not undone"
         opened.voxel.setValue(0.2)
         undo = document.UndoCount
+        opened.accept()
+        cancel_at_last(opened)
+        assert document.UndoCount == undo and len(document.findObjects("Mesh::FeaturePython")) == 0
         opened.accept()
         wait_for(lambda: opened.closed, "simulation")
         assert document.UndoCount == undo + 1, "not one transaction"

@@ -75,6 +75,17 @@ class Export:
             target = os.path.join(self._folder.name, "stock.stl")
         return native.export(self.data, self.stock_file, target, progress=progress, **self.options)
 
+    @property
+    def unfinished(self):
+        """Whether the file is still to be written by finish()."""
+        return self._folder is not None
+
+    def discard(self):
+        """Forget what finish() would write."""
+        if self._folder is not None:
+            self._folder.cleanup()
+            self._folder = None
+
     def finish(self):
         """What only FreeCAD can do: shapes."""
         if self._folder is None:
@@ -86,8 +97,7 @@ class Export:
             else:
                 shape.exportStep(self.path)
         finally:
-            self._folder.cleanup()
-            self._folder = None
+            self.discard()
 
 
 def export_steps(obj, path, **options):

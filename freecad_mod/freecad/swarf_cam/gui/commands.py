@@ -23,6 +23,8 @@ def chosen_job():
     for obj in Gui.Selection.getSelection():
         if jobs.is_job(obj):
             return obj
+        if simulation.is_simulation(obj) and obj.Job is not None:
+            return obj.Job  # other jobs may cut its result
         for parent in getattr(obj, "InListRecursive", ()):
             if jobs.is_job(parent):
                 return parent

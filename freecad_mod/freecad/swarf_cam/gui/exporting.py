@@ -144,7 +144,8 @@ class ExportPanel:
         """The thread is through, with a number of triangles or an error."""
         cancelled = self.worker.cancelled
         self.worker = None
-        if error is not None and cancelled:
+        if cancelled and (error is not None or self.made.unfinished):  # else the file is there
+            self.made.discard()
             self.end(translate("Swarf", "Cancelled; nothing was changed."))
             return
         try:

@@ -42,12 +42,15 @@ class StockChoice:
         self.source, self.lie = choice(), choice()
         self.source.setObjectName("SwarfStockFrom")
         self.lie.setObjectName("SwarfStockLie")
-        self._simulations = simulation.possible_previous(job)
+        self._possible = simulation.possible_previous(job)
+        previous = setups.previous_of(job)
+        # one that the job cuts already stays what it cuts, even where it cannot: starting tells why
+        kept = [previous] if previous is not None and previous not in self._possible else []
+        self._simulations = self._possible + kept
         self.source.addItem(translate("Swarf", "the job's own"))
         for obj in self._simulations:
             self.source.addItem(translate("Swarf", "what is left by '{0}'").format(obj.Label))
-        previous = setups.previous_of(job)
-        if previous in self._simulations:
+        if previous is not None:
             self.source.setCurrentIndex(1 + self._simulations.index(previous))
         self.source.currentIndexChanged.connect(self.show_lies)
         self.show_lies()
@@ -66,6 +69,8 @@ class StockChoice:
             return
         if setups.previous_of(self.job) is self.chosen:
             self.lie.addItem(translate("Swarf", "as before"), self.KEEP)
+        if self.chosen not in self._possible:
+            return
         if setups.placement_by_models(self.chosen.Job, self.job) is not None:
             self.lie.addItem(translate("Swarf", "as the model of the job"), self.AS_MODEL)
         for axis in "XYZ":
@@ -202,7 +207,7 @@ class SimulationPanel:
         self.worker = None
         self.stop_showing_work("")
         try:
-            if error is not None and cancelled:
+            if cancelled:  # even where nothing was left to break off
                 self.message.setText(translate("Swarf", "Cancelled; nothing was changed."))
             elif error is not None:
                 self.show_error(error)
