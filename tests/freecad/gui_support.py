@@ -4,6 +4,7 @@ to $SWARF_GUI_OUT."""
 
 import os
 import sys
+import threading
 import time
 import traceback
 
@@ -26,6 +27,18 @@ for group in ("Path", "CAM"):
 FreeCAD.ParamGet("User parameter:BaseApp/Preferences/OutputWindow").SetBool("checkShowReportViewOnError", False)
 
 WAIT_SECONDS = 120
+
+# What Qt's slots, timers and threads raised: nobody else would notice.
+_raised = []
+
+
+def _record(kind, error, trace):
+    _raised.append("".join(traceback.format_exception(kind, error, trace)))
+    print(_raised[-1])
+
+
+sys.excepthook = _record
+threading.excepthook = lambda arguments: _record(arguments.exc_type, arguments.exc_value, arguments.exc_traceback)
 
 
 def pump(seconds):
@@ -55,6 +68,7 @@ def run(check):
     verdict = "FAILED"
     try:
         check()
+        assert not _raised, "%d exceptions in slots or threads, the first:\n%s" % (len(_raised), _raised[0])
         verdict = "PASSED"
     except BaseException:
         traceback.print_exc()
