@@ -258,6 +258,33 @@ class Verifying(PanelTest):
         page.clearance.setValue(0.0)
         self.checked()
 
+    def typing(self, document, job):
+        """Into the page while the job is read and cut: it stays, and nothing is told before it is finished."""
+        panel, page = self.panel, self.panel.setup
+        panel.tabs.setCurrentWidget(page)
+        told = []
+        page.held.connect(lambda *what: told.append(what))
+        panel.opening.reload()
+        box = page.tools.itemWidget(page.tools.topLevelItem(1), 1)
+        panel.activateWindow()
+        box.lineEdit().setFocus()
+        pump(0.1)
+        box.setEditText("SK4")
+        undo = document.UndoCount
+        wait_for(lambda: panel.session is not None, "opening")
+        pump(0.2)
+        assert page.tools.itemWidget(page.tools.topLevelItem(1), 1) is box and box.currentText() == "SK4"
+        assert document.UndoCount == undo
+        # a page that must be filled again, for a tool has got another name
+        job.Tools.Group[1].Tool.Label = "Other"
+        panel.setting_up.show()
+        pump(0.2)
+        box = page.tools.itemWidget(page.tools.topLevelItem(1), 1)
+        assert page.tools.topLevelItem(1).text(0) == "T2 Other" and box.currentText() == ""
+        assert not told, "what is half typed was taken for a holder: %s" % told
+        assert page.tools.topLevelItemCount() == 3
+        self.checked()
+
     def deviation(self):
         """Colours, legend, value under the mouse, pins, another tolerance."""
         panel, view = self.panel, self.panel.view
@@ -351,7 +378,8 @@ def check():
     test = Verifying()
     document, job = new_job("verify")
     test.run((test.open, document, job), (test.findings,), (test.accepting, document, job), (test.stopping,),
-             (test.deviation,), (test.comparing,), (test.fixtures, document, job), (test.holders, document, job))
+             (test.deviation,), (test.comparing,), (test.fixtures, document, job), (test.holders, document, job),
+             (test.typing, document, job))
 
 
 start(check)

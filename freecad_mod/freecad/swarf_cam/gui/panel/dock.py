@@ -206,15 +206,16 @@ class LivePanel(QtWidgets.QDockWidget):
         self.show_state()
         self.wish()
 
-    def close_job(self):
-        """Watch no job."""
+    def close_job(self, for_another=False):
+        """Watch no job; for_another: one is watched at once, whose set-up is shown then over what is shown now."""
         self.opening.close_job()
         self.player.close_job()
         self.view.close_job()
         self.timeline.open(None)
         self.operations.open(None, ())
         self.program.open(None)
-        self.setting_up.show()
+        if not for_another:
+            self.setting_up.show()
         self.picking.close_job()
         self.checking.close_job()
         self.banner.done()

@@ -51,7 +51,7 @@ class Opening:
     def watch(self, job, voxel_mm=None):
         """Read a job and show it; voxel_mm None: from the preferences."""
         panel = self._panel
-        panel.close_job()
+        panel.close_job(for_another=True)
         self._watch = watch = JobWatch(job, panel)
         watch.changed.connect(self._job_changed)
         watch.deleted.connect(self._job_deleted)

@@ -10,6 +10,7 @@ from ..qt import QtCore, QtWidgets
 translate = FreeCAD.Qt.translate
 
 STICKOUT_MAX_MM = 1000.0
+LENGTH_DECIMALS = 2
 
 # Columns of the tools.
 TOOL, HOLDER, STICKOUT = range(3)
@@ -18,7 +19,10 @@ TOOL, HOLDER, STICKOUT = range(3)
 class SetupPage(QtWidgets.QWidget):
     """Tells by held (name of a tool controller, holder, stickout in mm), by add_pressed that the objects selected in
     FreeCAD are to be fixtures, by removed the name of one that is none any more, by cleared another clearance, which is
-    kept in the settings."""
+    kept in the settings.
+
+    _told: name of a tool controller -> [holder, stickout] as it was shown or told last; _usual: -> stickout to begin with;
+    _filling: the page is being filled, so that what its editors say on going is nothing that the user wants."""
 
     held = QtCore.Signal(str, str, float)
     add_pressed = QtCore.Signal()
@@ -29,6 +33,8 @@ class SetupPage(QtWidgets.QWidget):
         super().__init__(parent)
         self.setObjectName("SwarfSetup")
         self._holder_names = holder_names
+        self._told, self._usual, self._filling = {}, {}, False
+        self._texts, self._fixtures = [], []
         row = QtWidgets.QHBoxLayout(self)
         row.setContentsMargins(6, 6, 6, 6)
         row.addLayout(self._make_tools(), 3)
@@ -86,7 +92,7 @@ class SetupPage(QtWidgets.QWidget):
     def _length(name, most):
         box = QtWidgets.QDoubleSpinBox()
         box.setObjectName(name)
-        box.setDecimals(2)
+        box.setDecimals(LENGTH_DECIMALS)
         box.setRange(0.0, most)
         box.setSuffix(" mm")
         box.setKeyboardTracking(False)
@@ -94,13 +100,31 @@ class SetupPage(QtWidgets.QWidget):
 
     def show_job(self, tools, fixtures):
         """tools: (name of the controller, text, holder, stickout in mm, the stickout to begin with) each; fixtures:
-        (name, label) each. Empty for no job."""
+        (name, label) each. Empty for no job. What is shown already stays as it is, with what is being typed into it."""
+        self._usual = {name: usual for name, _, _, _, usual in tools}
+        texts = [(name, text) for name, text, _, _, _ in tools]
+        wanted = {name: [holder, round(stickout, LENGTH_DECIMALS)] for name, _, holder, stickout, _ in tools}
+        self._filling = True  # an editor that loses the focus because it goes would tell what is half typed
+        try:
+            if (texts, wanted) != (self._texts, self._told):
+                self._fill_tools(tools)
+                self._texts = texts
+            if list(fixtures) != self._fixtures:
+                self._fill_fixtures(fixtures)
+                self._fixtures = list(fixtures)
+        finally:
+            self._filling = False
+
+    def _fill_tools(self, tools):
         self.tools.clear()
-        for name, text, holder, stickout, usual in tools:
+        self._told = {}
+        for name, text, holder, stickout, _ in tools:
             item = QtWidgets.QTreeWidgetItem([text])
             item.setToolTip(TOOL, text)
             self.tools.addTopLevelItem(item)
-            self._add_editors(item, name, holder, stickout, usual)
+            self._add_editors(item, name, holder, stickout)
+
+    def _fill_fixtures(self, fixtures):
         self.fixtures.clear()
         for name, label in fixtures:
             item = QtWidgets.QTreeWidgetItem([label])
@@ -108,7 +132,7 @@ class SetupPage(QtWidgets.QWidget):
             self.fixtures.addTopLevelItem(item)
         self._show_choice()
 
-    def _add_editors(self, item, name, holder, stickout, usual):
+    def _add_editors(self, item, name, holder, stickout):
         box = QtWidgets.QComboBox()
         box.setObjectName("SwarfHolder-" + name)
         box.setEditable(True)
@@ -123,18 +147,20 @@ class SetupPage(QtWidgets.QWidget):
         length = self._length("SwarfStickout-" + name, STICKOUT_MAX_MM)
         length.setValue(stickout)
         length.setEnabled(bool(holder))
-        told = [holder, stickout]
+        self._told[name] = [holder, length.value()]
 
         def tell():
+            if self._filling:
+                return
             text = box.currentText().strip()
             length.setEnabled(bool(text))
             if text and length.value() == 0.0:
                 length.blockSignals(True)
-                length.setValue(usual)
+                length.setValue(self._usual[name])
                 length.blockSignals(False)
             wanted = [text, length.value() if text else 0.0]
-            if wanted != told:
-                told[:] = wanted
+            if wanted != self._told[name]:
+                self._told[name] = wanted
                 self.held.emit(name, *wanted)
         box.activated.connect(lambda *_: tell())
         box.lineEdit().editingFinished.connect(tell)
