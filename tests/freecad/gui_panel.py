@@ -344,6 +344,7 @@ class Watching(PanelTest):
 
     def outputs(self, document):
         """Clipboard, file, frames, the document."""
+        import samples
         from freecad.swarf_cam.app import simulation
         from freecad.swarf_cam.gui.panel import export
 
@@ -376,8 +377,19 @@ class Watching(PanelTest):
         obj, = [item for item in document.Objects if simulation.is_simulation(item)]
         assert obj.UpToDate and document.UndoCount == undo + 1
         screenshot("panel-kept.png")
+        removed = obj.VolumeRemoved.Value
         document.undo()
         assert not [item for item in document.Objects if simulation.is_simulation(item)]
+        wait_for(lambda: not panel.opening._watch.comparing, "the undone result, which is no change")
+        # an edit that nobody has compared yet: the old result must not be stored for the new job
+        document.getObject("Wave").Path = samples.path_of("G0 Z5")
+        assert not panel.opening._watch.differs
+        panel.files.keep_result()
+        wait_for(lambda: not panel.files.keeper.running, "the result of the edited job")
+        obj, = [item for item in document.Objects if simulation.is_simulation(item)]
+        document.recompute()
+        assert obj.UpToDate and obj.VolumeRemoved.Value < removed - 50, (obj.VolumeRemoved.Value, removed)
+        document.undo()
 
 
 def check():

@@ -43,8 +43,9 @@ class Opening:
 
     @property
     def known_hashes(self):
-        """Hashes of the job's paths that have not changed since it was read, None when the job did change."""
-        return None if self._watch is None or self._watch.differs else self._watch.known
+        """Hashes of the job's paths that have not changed since it was read, None when the job did change, or may have."""
+        watch = self._watch
+        return None if watch is None or watch.differs or watch.comparing else watch.known
 
     # Reading
 

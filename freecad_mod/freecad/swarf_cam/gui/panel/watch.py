@@ -48,6 +48,11 @@ class JobWatch(QtCore.QObject):
         """The job, None once it is gone."""
         return self._job
 
+    @property
+    def comparing(self):
+        """Whether something changed of which is not known yet whether the job differs by it."""
+        return self._timer.isActive() or self._slices is not None
+
     def remember_steps(self):
         """Steps after which changes are told from how the job is now."""
         self._signature = yield from self._signature_steps()
