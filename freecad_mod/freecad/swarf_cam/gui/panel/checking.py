@@ -33,7 +33,7 @@ class Checking:
     def __init__(self, panel):
         self._panel = panel
         self._worker = self.outcome = None
-        self._old = []
+        self._old, self._again = [], False  # _again: to be judged by another tolerance is not enough
         self.found = []
         panel.findings.chosen.connect(self.go_to)
         panel.findings.run_pressed.connect(self._pressed)
@@ -75,7 +75,7 @@ class Checking:
     def check_soon(self):
         """Check again, when the last call of this was a while ago."""
         if self.outcome is not None or self.running:
-            self.outcome = None
+            self._again = True
             self._later.start()
 
     def judge_soon(self):
@@ -89,7 +89,7 @@ class Checking:
         self._first.stop()
         self.cancel()
         self._old += [self._worker] if self._worker is not None else []
-        self._worker, self.outcome, self.found = None, None, []
+        self._worker, self.outcome, self.found, self._again = None, None, [], False
         self._panel.findings.show_findings((), {}, None)
         self._panel.deviation.show_outcome(None)
         self._panel.findings.show_checked("")
@@ -102,6 +102,7 @@ class Checking:
             return
         self._first.stop()
         self._later.stop()
+        self._again = False
         tolerance, stop, clearance = settings.tolerance(), settings.flag("StopAtError"), settings.clearance()
         self._run(translate("Swarf", "Checking ..."), lambda progress: checks.run(
             session.job, session.voxel_mm, tolerance, progress, stop, clearance))
@@ -109,7 +110,7 @@ class Checking:
     def _judge(self):
         if self._panel.session is None:
             return
-        if self.running or self.outcome is None or self.outcome.verification is None:
+        if self._again or self.running or self.outcome is None or self.outcome.verification is None:
             self.start()
             return
         outcome, tolerance = self.outcome, settings.tolerance()
@@ -157,8 +158,9 @@ class Checking:
             text = translate("Swarf", "Cancelled.") if self._panel.is_cancelled(error) else str(error)
         self._panel.findings.show_checked(text)
         self._show_title()
-        if error is None and outcome.stopped:
-            self.go_to(next(finding for finding in self.found if finding.severity == "error"))
+        worst = next((finding for finding in self.found if finding.severity == "error"), None)
+        if error is None and outcome.stopped and worst is not None:  # it may have been accepted meanwhile
+            self.go_to(worst)
 
     def _summary(self, session):
         if self.outcome.stopped:
@@ -203,8 +205,10 @@ class Checking:
         job.Document.openTransaction(name)
         try:
             accepted.keep(job, change(accepted.accepted_of(job)))
-        except JobError as error:
+        except BaseException as error:
             job.Document.abortTransaction()
+            if not isinstance(error, JobError):
+                raise
             self._panel.fail(error)
         else:
             job.Document.commitTransaction()

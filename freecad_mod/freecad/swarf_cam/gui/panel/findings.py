@@ -28,7 +28,6 @@ KINDS = {
     "travel": QT_TRANSLATE_NOOP("Swarf", "Travel"), "tool": QT_TRANSLATE_NOOP("Swarf", "Tool"),
     "load": QT_TRANSLATE_NOOP("Swarf", "Loads"), "uncut": QT_TRANSLATE_NOOP("Swarf", "Not simulated"),
     "loose": QT_TRANSLATE_NOOP("Swarf", "Loose pieces"), "acceptance": QT_TRANSLATE_NOOP("Swarf", "Idle acceptances"),
-    "loose": QT_TRANSLATE_NOOP("Swarf", "Loose pieces"),
 }
 
 # Numbers of pins.

@@ -47,8 +47,10 @@ class SettingUp:
         job.Document.openTransaction(name)
         try:
             change(job)
-        except JobError as error:
+        except BaseException as error:
             job.Document.abortTransaction()
+            if not isinstance(error, JobError):
+                raise
             panel.fail(error)
             self.show()
         else:
