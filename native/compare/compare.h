@@ -34,6 +34,9 @@ typedef struct swarf_samples {
     size_t count;
 } swarf_samples;
 
+/** Beside SWARF_POINT_ bits: the nearest triangle faces the other way. */
+enum { POINT_TURNED = 8 };
+
 /** Points on the surface of a stock, in the order of its leaves. */
 typedef struct swarf_points {
     size_t count;
@@ -41,7 +44,8 @@ typedef struct swarf_points {
     float *area;     /**< of the surface each stands for */
     float *distance; /**< from the design, positive outside */
     uint32_t *triangle;
-    uint8_t *kind; /**< SWARF_POINT_EDGE; _UNTOUCHED where it lies on the first stock, whatever its distance */
+    uint8_t *kind; /**< SWARF_POINT_EDGE; _UNTOUCHED where it lies on the first stock, whatever its distance;
+                      POINT_TURNED */
     size_t leaf_count;
     size_t *slot;  /**< of each leaf, swarf_layout_slot(), ascending */
     size_t *first; /**< point of each leaf, and one more: their number */
@@ -73,16 +77,23 @@ swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *
                                 swarf_points *out);
 void swarf_points_free(swarf_points *points);
 /** Points of the design, no more than `spacing` apart, that lie deeper in the stock, or farther out of it, than `least`
- *  mm; *area is that of all points tried. Values are positive in the stock and end at its band. The stock has been
- *  entered. */
+ *  mm; *area is that of all points tried. Values are positive in the stock and end at its band. `marks` (may be NULL;
+ *  else spacing is at most a voxel) has a byte per slot: gets what the design is there. The stock has been entered. */
 swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double least,
-                                 const swarf_progress *progress, double from, double to, swarf_samples *out,
-                                 double *area);
+                                 uint8_t *marks, const swarf_progress *progress, double from, double to,
+                                 swarf_samples *out, double *area);
 
-/** The slots whose volumes follow from the points: marks them in `settled` (all 0 before, one per slot) and fills their
- *  measured->slots; the others of these stay 0. on_stock has distances. */
+/** Marks of slots: a surface is in it; one that the other does not run beside. */
+enum { SLOT_MET = 1, SLOT_OPEN = 2 };
+
+/** Mark the slots at and just beside a point in voxels of the layout. Any thread. */
+void swarf_mark_slots(const swarf_tree_layout *layout, const double at[3], uint8_t mark, uint8_t *marks);
+
+/** The slots whose volumes follow from the points: turns marks of the design, which has no holes and lies within the
+ *  layout, into 1 for these and 0, and fills their measured->slots; the others of these stay 0. on_stock has distances.
+ */
 swarf_status swarf_match_slots(const swarf_stock *stock, const swarf_solid *design, const swarf_measured *measured,
-                               uint8_t *settled);
+                               uint8_t *marks);
 
 /** Put parts end to end, in their order; free `count` parts and the array they are in (NULL is legal). */
 swarf_status swarf_samples_join(const swarf_samples *parts, size_t count, swarf_samples *out);

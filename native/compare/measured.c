@@ -15,6 +15,10 @@
 /* A point within this many voxels of the first stock's surface lies on it. */
 static const double untouched_error = 0.05;
 
+/* The surfaces at a point and nearest to it face away from each other from this cosine of their normals on: less than a
+ * right angle's, for the normals at edges lie between those of the faces. */
+static const double turned_cosine = -0.2;
+
 /* More points on the design than this are not tried; fewer where it is far larger than the stock, which is said
  * elsewhere: each that lies beyond the stock would be told of. */
 static const double most_points = 2e7, most_points_beyond = 1e5;
@@ -22,11 +26,26 @@ static const double most_points = 2e7, most_points_beyond = 1e5;
 enum { PIECE = 1024 };
 
 struct work {
+    const swarf_stock *stock;
     const swarf_solid *design;
     const swarf_stock *first;
     const swarf_points *points;
     double voxel;
 };
+
+static int is_turned(swarf_probe *probe, const double point[3], const swarf_corners *triangle)
+{
+    double at[3], slope[3], normal[3], product = 0, squares[2] = {0, 0};
+    for (int k = 0; k < 3; k++) at[k] = (point[k] - probe->layout->origin[k]) * probe->scale;
+    swarf_probe_slope(probe, at, slope);
+    swarf_corners_normal(triangle, normal);
+    for (int k = 0; k < 3; k++) {
+        product += slope[k] * normal[k];
+        squares[0] += slope[k] * slope[k];
+        squares[1] += normal[k] * normal[k];
+    }
+    return product < turned_cosine * sqrt(squares[0] * squares[1]);
+}
 
 static swarf_status measure_piece(void *context, size_t index)
 {
@@ -34,7 +53,7 @@ static swarf_status measure_piece(void *context, size_t index)
     const swarf_points *points = work->points;
     const size_t end = (index + 1) * PIECE < points->count ? (index + 1) * PIECE : points->count;
     swarf_solid_hit hit = {.place = SIZE_MAX}; /* points are in the order of leaves: near each other */
-    swarf_probe probe = {0};
+    swarf_probe probe = {0}, own = swarf_probe_begin(work->stock);
     if (work->first) probe = swarf_probe_begin(work->first);
     for (size_t i = index * PIECE; i < end; i++) {
         double point[3], at[3];
@@ -42,6 +61,7 @@ static swarf_status measure_piece(void *context, size_t index)
         swarf_solid_find_next(work->design, point, &hit);
         points->distance[i] = (float)hit.distance;
         points->triangle[i] = work->design->source[hit.place];
+        if (is_turned(&own, point, &work->design->corners[hit.place])) points->kind[i] |= POINT_TURNED;
         if (!work->first) continue;
         for (int k = 0; k < 3; k++) at[k] = (point[k] - probe.layout->origin[k]) * probe.scale;
         if (fabs((double)swarf_probe_point(&probe, at)) < untouched_error * work->voxel)
@@ -64,19 +84,22 @@ static swarf_status measure(swarf_measured *m, const swarf_stock *stock, const s
 {
     const double voxel = m->layout.voxel;
     SWARF_TRY(swarf_sample_stock(stock, progress, 0, 0.1, &m->on_stock));
-    struct work work = {design, first, &m->on_stock, voxel};
+    struct work work = {stock, design, first, &m->on_stock, voxel};
     SWARF_TRY(swarf_parallel_for((m->on_stock.count + PIECE - 1) / PIECE, measure_piece, &work, progress, 0.1, 0.5));
     const double spacing = fmax(voxel, sqrt(design->facts.area_mm2 / most_design_points(&m->layout, design)));
-    SWARF_TRY(swarf_sample_design(stock, design, spacing, voxel, progress, 0.5, 0.6, &m->on_design, &m->design_mm2));
     /* 9 bytes for 512 voxels */
     m->slots = calloc(swarf_layout_nodes(&m->layout) * SWARF_NODE_SLOTS, sizeof *m->slots);
-    uint8_t *settled = calloc(swarf_layout_nodes(&m->layout) * SWARF_NODE_SLOTS, sizeof *settled);
+    uint8_t *marks = calloc(swarf_layout_nodes(&m->layout) * SWARF_NODE_SLOTS, sizeof *marks);
+    const int matches = !design->open && !(spacing > voxel) && swarf_layout_holds(&m->layout, &design->facts.box);
     swarf_status status = SWARF_OK;
-    if (!m->slots || !settled) status = swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
-    if (status == SWARF_OK) status = swarf_match_slots(stock, design, m, settled);
+    if (!m->slots || !marks) status = swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
     if (status == SWARF_OK)
-        status = swarf_compare_slots(stock, design, settled, progress, 0.6, 1, m->slots, &m->volumes);
-    free(settled);
+        status = swarf_sample_design(stock, design, spacing, voxel, matches ? marks : NULL, progress, 0.5, 0.6,
+                                     &m->on_design, &m->design_mm2);
+    if (status == SWARF_OK && matches) status = swarf_match_slots(stock, design, m, marks);
+    if (status == SWARF_OK)
+        status = swarf_compare_slots(stock, design, matches ? marks : NULL, progress, 0.6, 1, m->slots, &m->volumes);
+    free(marks);
     return status;
 }
 

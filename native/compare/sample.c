@@ -21,6 +21,10 @@ static const int stride[3] = {EDGE * EDGE, EDGE, 1};
  * this share of it; closer than a voxel to an edge one of them does not. */
 static const double smooth_cosine = 0.98, smooth_length = 0.06;
 
+/* Where a stock's surface runs beside the design's its field grows along the design's normal by at least this much:
+ * by 1 on faces, less at edges, by -1 at the other side of a thin wall. */
+static const double least_slope = 0.2;
+
 /* Pieces of work of this many leaves or triangles. */
 enum { LEAVES = 64, TRIANGLES = 1024 };
 
@@ -32,6 +36,7 @@ struct work {
     swarf_samples *parts; /* one per piece of work */
     const swarf_solid *design;
     double spacing, least;
+    uint8_t *marks;
     swarf_points *points; /* where the parts go; first counts within a part until they are there */
     size_t *starts;       /* of each part in them */
     double *area;         /* per piece */
@@ -276,17 +281,24 @@ struct finder {
     size_t room;
 };
 
-static swarf_status try_point(struct finder *f, size_t place, const double point[3], double area)
+/* `normal` is a unit vector. A point of no area only leaves a mark. */
+static swarf_status try_point(struct finder *f, size_t place, const double point[3], const double normal[3],
+                              double area)
 {
     const struct work *work = f->work;
-    double at[3], value = work->layout->background; /* beyond the layout */
+    double at[3], slope[3] = {0, 0, 0}, value = work->layout->background; /* beyond the layout */
     int within = 1;
     for (int k = 0; k < 3; k++) {
         at[k] = (point[k] - work->layout->origin[k]) * f->probe.scale;
         within &= at[k] >= -1 && at[k] < (double)work->layout->count[k] * SWARF_NODE_DIM;
     }
-    if (within) value = (double)swarf_probe_point(&f->probe, at);
-    if (fabs(value) <= work->least) return SWARF_OK;
+    if (within) value = (double)swarf_probe_slope(&f->probe, at, slope);
+    if (work->marks) { /* of a triangle that crosses others it is not known here where it bounds the solid */
+        const int is_beside = fabs(value) <= work->least && dot(slope, normal) >= least_slope;
+        const int is_plain = work->design->state[place] == SOLID_PLAIN;
+        swarf_mark_slots(work->layout, at, is_beside && is_plain ? SLOT_MET : SLOT_OPEN, work->marks);
+    }
+    if (fabs(value) <= work->least || area == 0) return SWARF_OK;
     if (work->design->state[place] == SOLID_CROSSING && !swarf_solid_bounds(work->design, place, point))
         return SWARF_OK;
     swarf_sample sample = {
@@ -295,7 +307,24 @@ static swarf_status try_point(struct finder *f, size_t place, const double point
     return add_sample(f->found, &f->room, &sample);
 }
 
-/* Points in rows along the longest edge, in the middle of pieces of equal area. */
+/* Marks along an edge. */
+static swarf_status mark_edge(struct finder *f, size_t place, const float from[3], const float to[3],
+                              const double normal[3])
+{
+    double square = 0, point[3];
+    for (int k = 0; k < 3; k++) square += ((double)to[k] - from[k]) * ((double)to[k] - from[k]);
+    const size_t steps = (size_t)ceil(sqrt(square) / f->work->spacing);
+    for (size_t i = 0; i <= steps; i++) {
+        const double along = steps ? (double)i / (double)steps : 0;
+        for (int k = 0; k < 3; k++) point[k] = (1 - along) * from[k] + along * to[k];
+        SWARF_TRY(try_point(f, place, point, normal, 0));
+    }
+    return SWARF_OK;
+}
+
+/* Points in rows along the longest edge, in the middle of pieces of equal area. Beyond the ends of a row lie what slant
+ * edges cut off it; where this is far, as in slivers, these edges are marked too, so that all of the triangle is within
+ * 1.2 times the spacing of a mark. */
 static swarf_status sample_triangle(struct finder *f, size_t place, double *area)
 {
     const struct work *work = f->work;
@@ -315,8 +344,15 @@ static swarf_status sample_triangle(struct finder *f, size_t place, double *area
     const double own = 0.5 * sqrt(dot(normal, normal));
     if (!(own > 0)) return SWARF_OK;
     *area += own;
+    for (int k = 0; k < 3; k++) normal[k] /= 2 * own;
     const size_t rows = (size_t)ceil(2 * own / edge[base] / work->spacing);
     const float *a = t->xyz[base], *b = t->xyz[(base + 1) % 3], *top = t->xyz[(base + 2) % 3];
+    double foot = 0; /* of the top on the longest edge, from its start */
+    for (int k = 0; k < 3; k++) foot += ((double)top[k] - a[k]) * ((double)b[k] - a[k]) / edge[base];
+    if (work->marks && fmax(foot, edge[base] - foot) > (double)rows * work->spacing) {
+        SWARF_TRY(mark_edge(f, place, a, top, normal));
+        SWARF_TRY(mark_edge(f, place, b, top, normal));
+    }
     for (size_t row = 0; row < rows; row++) {
         const double up = ((double)row + 0.5) / (double)rows;
         const size_t columns = (size_t)ceil(edge[base] * (1 - up) / work->spacing);
@@ -324,7 +360,7 @@ static swarf_status sample_triangle(struct finder *f, size_t place, double *area
             const double along = ((double)column + 0.5) / (double)columns;
             double point[3];
             for (int k = 0; k < 3; k++) point[k] = up * top[k] + (1 - up) * (a[k] + along * ((double)b[k] - a[k]));
-            SWARF_TRY(try_point(f, place, point, own * 2 * (1 - up) / (double)rows / (double)columns));
+            SWARF_TRY(try_point(f, place, point, normal, own * 2 * (1 - up) / (double)rows / (double)columns));
         }
     }
     return SWARF_OK;
@@ -337,20 +373,21 @@ static swarf_status sample_triangles(void *context, size_t index)
     const size_t end = (index + 1) * TRIANGLES < count ? (index + 1) * TRIANGLES : count;
     struct finder finder = {.work = work, .probe = swarf_probe_begin(work->stock), .found = &work->parts[index]};
     for (size_t place = index * TRIANGLES; place < end; place++)
-        if (work->design->state[place] == SOLID_PLAIN) SWARF_TRY(sample_triangle(&finder, place, &work->area[index]));
+        if (work->design->state[place] != SOLID_DROPPED) SWARF_TRY(sample_triangle(&finder, place, &work->area[index]));
     return SWARF_OK;
 }
 
 swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double least,
-                                 const swarf_progress *progress, double from, double to, swarf_samples *out,
-                                 double *area)
+                                 uint8_t *marks, const swarf_progress *progress, double from, double to,
+                                 swarf_samples *out, double *area)
 {
     const size_t pieces = (design->tree.count + TRIANGLES - 1) / TRIANGLES;
     struct work work = {.stock = stock,
                         .layout = swarf_tree_get_layout(stock->tree),
                         .design = design,
                         .spacing = spacing,
-                        .least = least};
+                        .least = least,
+                        .marks = marks};
     work.parts = calloc(pieces + 1, sizeof *work.parts);
     work.area = calloc(pieces + 1, sizeof *work.area);
     swarf_status status = SWARF_OK;

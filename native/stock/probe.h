@@ -56,11 +56,10 @@ static inline float swarf_probe_voxel(swarf_probe *probe, const int32_t ijk[3])
     return probe->values ? probe->values[(ijk[0] & 7) * 64 + (ijk[1] & 7) * 8 + (ijk[2] & 7)] : probe->everywhere;
 }
 
-/** Trilinear value (mm) at a point in voxels of the layout. */
-static inline float swarf_probe_point(swarf_probe *probe, const double at[3])
+/** The eight voxels around a point in voxels of the layout, and how far it is on the way from the first to the last. */
+static inline void swarf_probe_corners(swarf_probe *probe, const double at[3], float part[3], float value[8])
 {
     int32_t corner[3];
-    float part[3], value[8];
     for (int k = 0; k < 3; k++) {
         corner[k] = (int32_t)floor(at[k]);
         part[k] = (float)(at[k] - corner[k]);
@@ -69,9 +68,35 @@ static inline float swarf_probe_point(swarf_probe *probe, const double at[3])
         const int32_t ijk[3] = {corner[0] + (i >> 2), corner[1] + (i >> 1 & 1), corner[2] + (i & 1)};
         value[i] = swarf_probe_voxel(probe, ijk);
     }
+}
+
+/** Trilinear value (mm) at a point in voxels of the layout. */
+static inline float swarf_probe_point(swarf_probe *probe, const double at[3])
+{
+    float part[3], value[8];
+    swarf_probe_corners(probe, at, part, value);
     for (int i = 0; i < 4; i++) value[i] += part[0] * (value[i + 4] - value[i]);
     for (int i = 0; i < 2; i++) value[i] += part[1] * (value[i + 2] - value[i]);
     return value[0] + part[2] * (value[1] - value[0]);
+}
+
+/** The same, and how it grows there along x, y and z, per mm. */
+static inline float swarf_probe_slope(swarf_probe *probe, const double at[3], double slope[3])
+{
+    float part[3], value[8];
+    swarf_probe_corners(probe, at, part, value);
+    double sum = 0;
+    slope[0] = slope[1] = slope[2] = 0;
+    for (int i = 0; i < 8; i++) {
+        const int high[3] = {i >> 2, i >> 1 & 1, i & 1};
+        double share[3];
+        for (int k = 0; k < 3; k++) share[k] = high[k] ? (double)part[k] : 1 - (double)part[k];
+        sum += share[0] * share[1] * share[2] * (double)value[i];
+        for (int k = 0; k < 3; k++)
+            slope[k] +=
+                (high[k] ? probe->scale : -probe->scale) * share[(k + 1) % 3] * share[(k + 2) % 3] * (double)value[i];
+    }
+    return (float)sum;
 }
 
 #endif
