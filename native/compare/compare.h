@@ -103,7 +103,8 @@ void swarf_samples_free(swarf_samples *parts, size_t count);
 int swarf_deviation_ignores(const swarf_deviation_options *o, uint32_t triangle, const float xyz[3]);
 /** Of measured->on_design those that these options are beyond; where the stock's band does not tell how far, their
  * value is what they are known to be beyond. */
-swarf_status swarf_find_missing(const swarf_measured *measured, const swarf_deviation_options *o, swarf_samples *out);
+swarf_status swarf_find_missing(const swarf_measured *measured, const swarf_deviation_options *o,
+                                const swarf_progress *progress, double from, double to, swarf_samples *out);
 
 /** Gather the samples, all of them beyond tolerance, into clusters and share out the volumes. */
 swarf_status swarf_cluster_samples(const swarf_tree_layout *layout, const swarf_samples *on_stock,

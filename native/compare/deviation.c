@@ -193,11 +193,11 @@ static swarf_status join_beyond(const struct piece *pieces, size_t count, swarf_
 }
 
 static swarf_status gather(swarf_deviation *d, const struct piece *pieces, size_t count,
-                           const swarf_deviation_options *options)
+                           const swarf_deviation_options *options, const swarf_progress *progress, double from)
 {
     swarf_samples on_stock = {0}, on_design = {0};
     swarf_status status = join_beyond(pieces, count, &on_stock);
-    if (status == SWARF_OK) status = swarf_find_missing(d->measured, options, &on_design);
+    if (status == SWARF_OK) status = swarf_find_missing(d->measured, options, progress, from, 1, &on_design);
     if (status == SWARF_OK)
         status = swarf_cluster_samples(&d->measured->layout, &on_stock, &on_design, d->measured->slots, &d->clusters,
                                        &d->cluster_count);
@@ -213,14 +213,15 @@ static swarf_status judge(swarf_deviation *d, const swarf_deviation_options *opt
                           double from)
 {
     const size_t points = d->measured->on_stock.count, count = (points + PIECE - 1) / PIECE;
+    const double middle = 0.5 * (from + 1);
     struct work work = {d->measured, d, options, calloc(count + 1, sizeof(struct piece))};
     d->value = malloc((points + 1) * sizeof *d->value);
     d->kind = malloc(points + 1);
     swarf_status status = SWARF_OK;
     if (!work.pieces || !d->value || !d->kind) status = swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
-    if (status == SWARF_OK) status = swarf_parallel_for(count, judge_piece, &work, progress, from, 1);
+    if (status == SWARF_OK) status = swarf_parallel_for(count, judge_piece, &work, progress, from, middle);
     if (status == SWARF_OK) status = sum_up(d, work.pieces, count);
-    if (status == SWARF_OK) status = gather(d, work.pieces, count, options);
+    if (status == SWARF_OK) status = gather(d, work.pieces, count, options, progress, middle);
     for (size_t i = 0; work.pieces && i < count; i++) free(work.pieces[i].beyond.samples);
     free(work.pieces);
     return status;
