@@ -131,6 +131,30 @@ class TestSetUps(unittest.TestCase):
         self.assertTrue(second.UpToDate)
         self.assertAlmostEqual(second.VolumeInitial.Value, own, delta=1e-6)
 
+    def test_undo_leaves_no_trace_in_the_links(self):
+        first = self.simulate(self.top)
+        self.document.openTransaction("of someone else")
+        self.top.Label = "Upper"
+        undo = self.document.UndoCount
+        simulation.set_stock(self.bottom, first, self.over)
+        self.assertEqual(self.document.UndoCount, undo + 1)
+        for step, users in ((None, 1), ("undo", 0), ("redo", 1), ("undo", 0)):
+            if step is not None:
+                getattr(self.document, step)()
+            # a user too many is a pointer to nowhere once the job is gone
+            self.assertEqual(first.InList.count(self.bottom), users, step)
+        self.assertEqual(self.top.Label, "Upper")
+        simulation.set_stock(self.bottom, first, self.over)
+        second = self.simulate(self.bottom)
+        for obj, name in ((self.bottom, setups.STOCK_FROM), (second, "Job")):
+            obj.removeProperty(name)  # as the property editor does
+            self.assertIn(name, obj.PropertiesList)
+        self.document.undo()
+        self.document.undo()
+        self.assertEqual(self.bottom.InList, [])
+        self.document.redo()
+        self.assertEqual(len(self.bottom.InList), 1)
+
     def test_save_and_reopen(self):
         first, second = self.chain()
         names = [obj.Name for obj in (self.top, self.bottom, first, second)]

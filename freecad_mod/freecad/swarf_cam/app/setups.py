@@ -39,10 +39,11 @@ def chain_of(job):
     return chain
 
 
-def assign(job, simulation, placement=None):
-    """Let a job cut what a simulation leaves, None: its own stock; in the transaction of the caller, so that it can be
-    undone. placement: FreeCAD.Placement from the other job's coordinates to this one's (None: unchanged). JobError when
-    that would go round."""
+def add_properties(job):
+    """Give a job the properties, in no transaction; one that is open is committed. An undo that took away a link that is
+    set would leave the job among the users of what it linked, in every FreeCAD so far, and FreeCAD would die of that
+    once the job is gone. Locked for the same reason."""
+    FreeCAD.closeActiveTransaction()
     for kind, name, text in (
             ("App::PropertyLink", STOCK_FROM,
              QT_TRANSLATE_NOOP("App::Property", "Simulation whose result is the stock; none: the job's own stock")),
@@ -50,6 +51,13 @@ def assign(job, simulation, placement=None):
              QT_TRANSLATE_NOOP("App::Property", "How that result lies here: from its job's coordinates to these"))):
         if name not in job.PropertiesList:
             job.addProperty(kind, name, GROUP, text)
+        job.setPropertyStatus(name, "LockDynamic")
+
+
+def assign(job, simulation, placement=None):
+    """Let a job that has the properties cut what a simulation leaves, None: its own stock; in the transaction of the
+    caller, so that it can be undone. placement: FreeCAD.Placement from the other job's coordinates to this one's (None:
+    unchanged). JobError when that would go round."""
     if simulation is not None and simulation.Job is not None:
         if job in [simulation.Job, *chain_of(simulation.Job)]:
             raise JobError("the set-ups would go round: '%s' depends on the job '%s'" % (simulation.Label, job.Label))

@@ -90,6 +90,7 @@ class Simulation:
         for name, kind, group, text, mode in PROPERTIES:
             if name not in obj.PropertiesList:
                 obj.addProperty(kind, name, group, text)
+            obj.setPropertyStatus(name, "LockDynamic")  # as in setups.add_properties(); not ours without them either
             obj.setEditorMode(name, mode)
 
     def execute(self, obj):
@@ -227,6 +228,7 @@ def possible_previous(job):
 def set_stock(job, previous, placement=None):
     """setups.assign() in one undoable step; the marks of the job's simulations follow."""
     document = job.Document
+    setups.add_properties(job)
     document.openTransaction("Stock")
     try:
         setups.assign(job, previous, placement)
