@@ -66,6 +66,7 @@ def simulate(
     picture_size: tuple[int, int] = (1600, 1200),
     view: str = "isometric",
     colour: Optional[str] = None,
+    tolerance: float = 0.05,
     drop_loose: bool = False,
     progress: Optional[Progress] = None,
 ) -> Result:
@@ -74,7 +75,8 @@ def simulate(
     Where the stock is what another job leaves, that is played first. ``voxel`` in mm, or ``resolution`` voxels along the stock's longest edge (512 unless told); ``batch`` as in
     Stock.simulate(). The stock is compared with the design when the job has one. A mesh is made when ``mesh`` is true
     or an output needs it; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file.
-    ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by. Pieces that come loose are in
+    ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by, deviations green within
+    ``tolerance`` (mm). Pieces that come loose are in
     the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. Seconds of each stage
     are in the result. Raises what the stages raise; nothing is written before the cutting is done.
     """
@@ -123,7 +125,7 @@ def simulate(
         result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
     tints = None
     if colour is not None and result.mesh is not None:
-        tints = timed("mesh", lambda report: colours.make(colour, result.mesh, exact, job, progress=report))
+        tints = timed("mesh", lambda report: colours.make(colour, result.mesh, exact, job, tolerance, progress=report))
     for path in outputs:
         if output_suffix(path) in MESH_SUFFIXES:
             timed("write", lambda report: result.mesh.write(path, colors=tints, progress=report))

@@ -189,6 +189,8 @@ def test_colours(done, job):
     assert cut == pytest.approx(20 * 5, rel=1e-2)  # the wall left of the cut, in two steps
     tints = colours.make("deviation", done.mesh, done.surface, job, 0.05)
     assert len(tints) == done.mesh.triangle_count and len(set(tints)) > 1
+    loosely = colours.make("deviation", done.mesh, done.surface, job, 50.0)
+    assert len(set(loosely)) == 1 and loosely != tints
     for kind in ("operation", "deviation"):
         with pytest.raises(ValueError, match="colours by " + kind):
             colours.make(kind, done.mesh, None, Job(name="none", program=job.program))
@@ -206,6 +208,20 @@ def test_who_colours_can_be_cancelled(done, job, kind):
     for wanted in sorted(set(told)):
         with pytest.raises(swarf.Cancelled):
             colours.make(kind, done.mesh, done.surface, job, progress=lambda part: part >= wanted)
+
+
+def test_the_tolerance_of_colours(tmp_path, capsys):
+    program, files = tmp_path / "cut.nc", []
+    program.write_text(PROGRAM)
+    job = Job(name="box", program=swarf.Program.parse_gcode(PROGRAM), tools={1: swarf.Cutter("flat:d=2,l=20")}, stock=BOX,
+              design=stocks._box_mesh((LO, HI)))
+    for tolerance in (0.05, 20.0):
+        files.append(tmp_path / f"{tolerance}.ply")
+        swarf.simulate(job, voxel=0.5, compare=False, colour="deviation", tolerance=tolerance, outputs=[str(files[-1])])
+    assert files[0].read_bytes() != files[1].read_bytes()
+    words = ["simulate", str(program), "--stock", "box:0,0,-5,30,20,0", "--tool", "1=flat:d=2,l=20", "--tolerance"]
+    for wrong in ("0", "nan", "-1"):
+        assert main([*words, wrong]) == 2 and "wanted a number above 0" in capsys.readouterr().err
 
 
 def test_lumps(done):

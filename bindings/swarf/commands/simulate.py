@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from typing import Any
@@ -25,6 +26,8 @@ def add(subparsers: Any) -> None:
     command.add_argument("--output", metavar="FILE", action="append", default=[],
                          help="write the result: .stl .ply .obj .3mf .glb .vdb (repeatable)")
     command.add_argument("--colours", choices=colours.KINDS, help="what mesh files are coloured by (not .stl)")
+    command.add_argument("--tolerance", metavar="MM", type=float, default=0.05,
+                         help="deviations up to this are coloured green (default 0.05)")
     command.add_argument("--loose", choices=("keep", "drop"), default="keep",
                          help="pieces that have come loose: keep them, or leave them out (default: keep)")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
@@ -40,6 +43,8 @@ def run(arguments: argparse.Namespace) -> int:
     check_suffix(arguments.picture, "picture", ".png")
     check_suffix(arguments.report, "report", ".json")
     check_outputs((*arguments.output, arguments.picture, arguments.report), arguments.input)
+    if not (math.isfinite(arguments.tolerance) and arguments.tolerance > 0):
+        raise ValueError(f"tolerance {arguments.tolerance:g}: wanted a number above 0")
     machine = None if arguments.machine is None else timing.read_machine(arguments.machine)
     with Bar() as bar:
         started = time.perf_counter()
@@ -54,6 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
             outputs=arguments.output,
             picture=arguments.picture,
             colour=arguments.colours,
+            tolerance=arguments.tolerance,
             drop_loose=arguments.loose == "drop",
             progress=bar,
         )
