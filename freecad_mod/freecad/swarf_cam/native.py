@@ -124,6 +124,11 @@ def to_fixtures(data):
     return result
 
 
+def pieces(shells):
+    """Places of the shells (with volume_mm3 and bounding_box) of each solid piece, its cavities behind it."""
+    return importlib.import_module(load().__name__ + ".parts").pieces(shells)
+
+
 def to_program(table):
     """swarf.Program of a MoveTable."""
     return table.play(load().Program())
@@ -148,7 +153,8 @@ def to_job(data):
 @dataclass
 class Result:
     """What a simulation came to; volumes in mm3. stock_file and mesh_file lie in the folder that was given.
-    excess and gouge are None without a design; colours: (r, g, b) of each triangle of the mesh, by operation."""
+    excess and gouge are None without a design; colours: (r, g, b), 0 .. 1, of each triangle of the mesh, by
+    operation."""
 
     stock_file: str
     mesh_file: str
@@ -211,26 +217,29 @@ def simulate(data, voxel_mm, folder, progress=None):
     findings += _lines(outcome.findings, names)
     findings += ["warning: operation '%s', command %d: %s" % (piece.operation or "-", piece.line, piece.text)
                  for piece in done.loose.pieces]
-    colours = importlib.import_module(swarf.__name__ + ".colours").make(
+    tints = importlib.import_module(swarf.__name__ + ".colours").make(
         "operation", done.mesh, done.surface, done.job,
         progress=(lambda fraction: report("colours", fraction)) if progress else None)
+    parts = {tint: tuple(part / 255 for part in tint) for tint in set(tints)}
     return Result(
         stock_file, mesh_file, len(data.moves), list(names), list(outcome.removed_by_operation),
         outcome.volume_initial, outcome.volume_final, comparison.excess_mm3 if comparison else None,
         comparison.gouge_mm3 if comparison else None, findings,
         sum(item.severity == "error" for played in (*(played for _, played in done.before), outcome)
-            for item in played.findings), done.seconds["total"], colours)
+            for item in played.findings), done.seconds["total"], [parts[tint] for tint in tints])
 
 
 # Error of a mesh where nobody says, in voxels: swarf.simulate's own.
 MESH_ERROR_VOXELS = 0.1
 
 
-def export(data, stock_file, path, error_mm=None, budget=0, colour=None, largest=False, progress=None):
+def export(data, stock_file, path, error_mm=None, budget=0, colour=None, tolerance_mm=0.05, largest=False,
+           progress=None):
     """Write the mesh of what is left of a JobData's stock, a .vdb file, on the exact surface -> number of triangles.
 
     error_mm: vertices are left out up to this (None: 0.1 voxels); budget: no more triangles, if the error allows;
-    colour: "operation", "deviation" or "thickness"; largest: the largest piece alone. progress as simulate(). Any thread.
+    colour: "operation", "deviation" (green within tolerance_mm of the design) or "thickness"; largest: the largest piece
+    alone. progress as simulate(). Any thread.
     JobError where nothing is left, or no mesh is that small; swarf.Error, OSError.
     """
     swarf = load()
@@ -250,6 +259,6 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, largest
                        % mesh.triangle_count)
     if largest:
         mesh = parts.largest(mesh)
-    tints = colours.make(colour, mesh, surface, job, progress=share(0.8, 0.95)) if colour else None
+    tints = colours.make(colour, mesh, surface, job, tolerance_mm, progress=share(0.8, 0.95)) if colour else None
     mesh.write(path, colors=tints, progress=share(0.95, 1))
     return mesh.triangle_count

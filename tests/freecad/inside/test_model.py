@@ -56,6 +56,39 @@ class TestModel(unittest.TestCase):
         finally:
             model.SHAPE_TRIANGLES_MAX = limit
 
+    def test_a_void_stays_one(self):
+        mesh = Mesh.createBox(20.0, 20.0, 20.0)
+        void = Mesh.createBox(6.0, 6.0, 6.0)
+        void.flipNormals()
+        beside = Mesh.createBox(2.0, 2.0, 2.0)
+        beside.translate(50, 0, 0)
+        for other in (void, beside):
+            mesh.addMesh(other)
+        shape = model.shape_of(mesh)
+        self.assertTrue(shape.isValid())
+        self.assertEqual([(round(solid.Volume, 6), len(solid.Shells), len(solid.Faces)) for solid in shape.Solids],
+                         [(20 ** 3 - 6 ** 3, 2, 12), (8, 1, 6)])
+        with self.assertRaisesRegex(JobError, "does not close"):
+            model.shape_of(void)
+
+    def test_what_cannot_be_added_leaves_nothing(self):
+        names = [obj.Name for obj in self.document.Objects]
+        with self.assertRaises(TypeError):
+            model._add(self.obj, "no shape", "Shape", "Stock", "Stock")
+        self.assertFalse(self.document.HasPendingTransaction)
+        self.assertEqual([obj.Name for obj in self.document.Objects], names)
+
+    def test_the_tolerance_colours(self):
+        self.job.Operations.Group[0].Path = samples.path_of("G0 X-5 Y10 Z5", "G0 Z-1.9", "G1 X45 F10", "G0 Z5")
+        self.document.recompute()
+        simulation.simulate(self.obj)
+        found = []
+        for tolerance in (0.05, 0.5):
+            model.export(self.obj, self.path("part.ply"), colour="deviation", tolerance_mm=tolerance)
+            with open(self.path("part.ply"), "rb") as file:
+                found.append(file.read())
+        self.assertNotEqual(*found)
+
     def test_a_solid_of_the_result_is_a_stock(self):
         solid = model.add_shape(self.obj)
         across = samples.add_operation(self.document, "Across", samples.add_controller(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What is left of the stock as a model: mesh files on the exact surface, solids for CAD, section wires."""
 
+import collections
 import math
 import os
 import shutil
@@ -73,7 +74,10 @@ class Export:
         if self.suffix in SHAPE_SUFFIXES:
             self._folder = tempfile.TemporaryDirectory(prefix="swarf-")
             target = os.path.join(self._folder.name, "stock.stl")
-        return native.export(self.data, self.stock_file, target, progress=progress, **self.options)
+        count = native.export(self.data, self.stock_file, target, progress=progress, **self.options)
+        if self._folder is not None:
+            _check_count(count)  # here nobody waits for it
+        return count
 
     @property
     def unfinished(self):
@@ -106,44 +110,70 @@ def export_steps(obj, path, **options):
     suffix_of(path)
     if not obj.Stock or not os.path.exists(obj.Stock):
         raise JobError("'%s' has no result yet: simulate it first" % obj.Label)
-    if setups.job_signature(obj.Job, obj.VoxelSize.Value) != obj.Signature:
+    if (yield from setups.signature_steps(obj.Job, obj.VoxelSize.Value, {})) != obj.Signature:
         raise JobError("'%s' is out of date: update it first" % obj.Label)
     return Export(obj, path, (yield from setups.gather(obj.Job)), options)
 
 
 def export(obj, path, progress=None, **options):
     """Write what is left of the stock into a file by its suffix -> number of triangles. options: error_mm, budget,
-    colour ("operation", "deviation" or "thickness"), largest (the largest piece alone)."""
+    colour ("operation", "deviation" or "thickness"), tolerance_mm (of the deviation's colours), largest (the largest
+    piece alone)."""
     made = steps.run(export_steps(obj, path, **options))
     count = made.run(progress)
     made.finish()
     return count
 
 
-def shape_of(mesh):
-    """Solid of a closed mesh, flat pieces as one face. JobError for more triangles than that is good for."""
-    if mesh.CountFacets > SHAPE_TRIANGLES_MAX:
+def _check_count(triangles):
+    if triangles > SHAPE_TRIANGLES_MAX:
         raise JobError("%d triangles are too many for a shape, %d are possible: allow a greater error, or write a mesh"
-                       % (mesh.CountFacets, SHAPE_TRIANGLES_MAX))
+                       % (triangles, SHAPE_TRIANGLES_MAX))
+
+
+# What native.pieces() asks of a shell.
+_Measures = collections.namedtuple("_Measures", "volume_mm3 bounding_box")
+
+
+def _measures(shell):
+    box = shell.BoundBox
+    return _Measures(shell.Volume, ((box.XMin, box.YMin, box.ZMin), (box.XMax, box.YMax, box.ZMax)))
+
+
+def shape_of(mesh):
+    """Solid of a closed mesh, flat pieces as one face, cavities left hollow; a compound where there are several.
+    JobError for more triangles than that is good for."""
+    _check_count(mesh.CountFacets)
     if not mesh.CountFacets:
         raise JobError("nothing is left of the stock")
     shape = Part.Shape()
     shape.makeShapeFromMesh(mesh.Topology, 1e-4)
     shells = shape.Shells
-    if not shells or not all(shell.isClosed() for shell in shells):
+    pieces = native.pieces([_measures(shell) for shell in shells])  # a cavity's volume is negative
+    if not pieces or not all(shell.isClosed() for shell in shells):
         raise JobError("the mesh does not close to a solid")
-    solids = [Part.makeSolid(shell).removeSplitter() for shell in shells]
+    solids = [Part.makeSolid(Part.makeCompound([shells[place] for place in piece])).removeSplitter()
+              for piece in pieces]
     return solids[0] if len(solids) == 1 else Part.makeCompound(solids)
 
 
 def add_shape(obj):
     """A Part object with the mesh of a simulation as a solid, in one undoable step -> it: what Path can take as the
     stock of a job. JobError as shape_of()."""
-    shape, document = shape_of(obj.Mesh), obj.Document
-    document.openTransaction("Shape")
-    made = document.addObject("Part::Feature", "Stock")
-    made.Label = "%s: %s" % (FreeCAD.Qt.translate("Swarf", "Stock"), obj.Label)
-    made.Shape = shape
+    return _add(obj, shape_of(obj.Mesh), "Shape", "Stock", FreeCAD.Qt.translate("Swarf", "Stock"))
+
+
+def _add(obj, shape, transaction, name, label):
+    """A Part object beside a simulation."""
+    document = obj.Document
+    document.openTransaction(transaction)
+    try:
+        made = document.addObject("Part::Feature", name)
+        made.Label = "%s: %s" % (label, obj.Label)
+        made.Shape = shape
+    except BaseException:
+        document.abortTransaction()
+        raise
     document.commitTransaction()
     return made
 
@@ -167,10 +197,4 @@ def section(obj, point, normal):
 
 def add_section(obj, point, normal):
     """A Part object with section() in the document, in one undoable step -> it."""
-    shape, document = section(obj, point, normal), obj.Document
-    document.openTransaction("Section")
-    made = document.addObject("Part::Feature", "Section")
-    made.Label = "%s: %s" % (FreeCAD.Qt.translate("Swarf", "Section"), obj.Label)
-    made.Shape = shape
-    document.commitTransaction()
-    return made
+    return _add(obj, section(obj, point, normal), "Section", "Section", FreeCAD.Qt.translate("Swarf", "Section"))

@@ -259,7 +259,7 @@ def store(obj, prepared, result):
     obj.Mesh = Mesh.Mesh(result.mesh_file)
     # a mesh that FreeCAD mended has other triangles
     whole = len(result.colours) == obj.Mesh.CountFacets
-    obj.FaceColours = [tuple(part / 255 for part in colour) for colour in result.colours] if whole else []
+    obj.FaceColours = result.colours if whole else []
     obj.VolumeInitial = result.volume_initial
     obj.VolumeFinal = result.volume_final
     obj.VolumeRemoved = result.volume_initial - result.volume_final

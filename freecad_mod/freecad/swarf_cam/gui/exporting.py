@@ -9,6 +9,7 @@ import FreeCADGui as Gui
 from .. import native
 from ..app import model
 from ..core.errors import JobError
+from . import settings
 from .qt import QtWidgets, choice, flags
 from .slices import Slices
 from .worker import Worker
@@ -128,7 +129,8 @@ class ExportPanel:
         self.bar.show()
         self.reading = Slices(
             model.export_steps(self.obj, path, error_mm=self.error.value(), colour=self.chosen_colour,
-                               largest=self.largest.isChecked()), self.on_read, self.form)
+                               tolerance_mm=settings.tolerance(), largest=self.largest.isChecked()),
+            self.on_read, self.form)
 
     def on_read(self, made, error):
         """The job is read, or cannot be."""
