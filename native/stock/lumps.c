@@ -42,8 +42,15 @@ typedef struct finding {
     uint32_t *part_at;  /* counted from the node's first until they are numbered through */
     uint16_t *parts_at; /* how many */
     part *all;
+    uint32_t *lump_at; /* of a part on top: its lump */
     size_t count;
+    const swarf_progress *progress;
 } finding;
+
+/* Shares of the progress: the leaves are parted, neighbours are joined, lumps are gathered. */
+static const double parted = 0.6, joined = 0.9;
+/* Parts between two reports. */
+enum { REPORT = 1 << 16 };
 
 /* Spread the bits to their neighbours within the leaf. */
 static void spread(const uint64_t in[8], uint64_t out[8])
@@ -123,6 +130,8 @@ static swarf_status number_parts(finding *f)
     size_t first = 0;
     for (size_t n = 0; n < nodes; n++) {
         if (f->of_node[n].count) memcpy(f->all + first, f->of_node[n].part, f->of_node[n].count * sizeof *f->all);
+        free(f->of_node[n].part);
+        f->of_node[n].part = NULL;
         for (size_t s = 0; s < SWARF_NODE_SLOTS; s++) f->part_at[n * SWARF_NODE_SLOTS + s] += (uint32_t)first;
         first += f->of_node[n].count;
     }
@@ -174,9 +183,16 @@ static size_t place_of(const swarf_tree_layout *layout, const int32_t slot[3])
     return node * SWARF_NODE_SLOTS + within;
 }
 
-static void join_neighbours(finding *f)
+static swarf_status report(const finding *f, uint32_t done, double from, double to)
 {
-    for (uint32_t i = 0; i < f->count; i++)
+    if (done % REPORT) return SWARF_OK;
+    return swarf_progress_report(f->progress, from + (to - from) * done / (double)f->count);
+}
+
+static swarf_status join_neighbours(finding *f)
+{
+    for (uint32_t i = 0; i < f->count; i++) {
+        SWARF_TRY(report(f, i, parted, joined));
         for (int axis = 0; axis < 3; axis++) {
             int32_t slot[3];
             for (int k = 0; k < 3; k++) slot[k] = f->all[i].corner[k] / SWARF_LEAF_DIM + (k == axis);
@@ -185,6 +201,8 @@ static void join_neighbours(finding *f)
             for (uint32_t j = f->part_at[at]; j < f->part_at[at] + f->parts_at[at]; j++)
                 if (touch(&f->all[i], &f->all[j], axis)) join(f->all, i, j);
         }
+    }
+    return SWARF_OK;
 }
 
 static void ends_of(unsigned bits, int32_t *lo, int32_t *hi)
@@ -249,47 +267,44 @@ static uint32_t part_of(const finding *f, const double point[3])
 static swarf_status gather_lumps(finding *f, swarf_lumps *out)
 {
     size_t room = 0;
-    uint32_t *number = malloc((f->count + 1) * sizeof *number);
-    if (!number) return swarf_fail(SWARF_ERROR_MEMORY, "lumps: out of memory");
-    swarf_status status = SWARF_OK;
-    for (uint32_t i = 0; i < f->count && status == SWARF_OK; i++) {
+    f->lump_at = malloc((f->count + 1) * sizeof *f->lump_at);
+    if (!f->lump_at) return swarf_fail(SWARF_ERROR_MEMORY, "lumps: out of memory");
+    for (uint32_t i = 0; i < f->count; i++) {
+        SWARF_TRY(report(f, i, joined, 1));
         const uint32_t top = top_of(f->all, i);
         if (top == i) {
-            status = swarf_array_reserve((void **)&out->lump, &room, out->count + 1, sizeof *out->lump);
-            if (status != SWARF_OK) break;
-            number[i] = (uint32_t)out->count;
+            SWARF_TRY(swarf_array_reserve((void **)&out->lump, &room, out->count + 1, sizeof *out->lump));
+            f->lump_at[i] = (uint32_t)out->count;
             out->lump[out->count++] =
                 (swarf_lump){.box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}};
         }
-        widen(f, &f->all[i], &out->lump[number[top]]);
+        widen(f, &f->all[i], &out->lump[f->lump_at[top]]);
     }
-    free(number);
     const double cube = f->layout->voxel * f->layout->voxel * f->layout->voxel;
     for (size_t i = 0; i < out->count; i++) out->lump[i].volume_mm3 = (double)out->lump[i].voxels * cube;
     if (out->count > 1) qsort(out->lump, out->count, sizeof *out->lump, larger_first);
-    return status;
+    for (size_t i = 0; i < out->count; i++) f->lump_at[top_of(f->all, part_of(f, out->lump[i].inside))] = (uint32_t)i;
+    return SWARF_OK;
 }
 
-static void find_points(finding *f, const swarf_lumps *lumps, const double *points, size_t count, uint32_t *lump_of)
+static void find_points(finding *f, const double *points, size_t count, uint32_t *lump_of)
 {
     for (size_t i = 0; i < count; i++) {
         const uint32_t own = part_of(f, points + 3 * i);
-        lump_of[i] = UINT32_MAX;
-        for (size_t k = 0; own != UINT32_MAX && k < lumps->count && lump_of[i] == UINT32_MAX; k++)
-            if (top_of(f->all, part_of(f, lumps->lump[k].inside)) == top_of(f->all, own)) lump_of[i] = (uint32_t)k;
+        lump_of[i] = own == UINT32_MAX ? UINT32_MAX : f->lump_at[top_of(f->all, own)];
     }
 }
 
-static swarf_status find(finding *f, const swarf_progress *progress, swarf_lumps *out)
+static swarf_status find(finding *f, swarf_lumps *out)
 {
     const size_t nodes = swarf_layout_nodes(f->layout);
     f->of_node = calloc(nodes + 1, sizeof *f->of_node);
     f->part_at = calloc(nodes * SWARF_NODE_SLOTS + 1, sizeof *f->part_at);
     f->parts_at = calloc(nodes * SWARF_NODE_SLOTS + 1, sizeof *f->parts_at);
     if (!f->of_node || !f->part_at || !f->parts_at) return swarf_fail(SWARF_ERROR_MEMORY, "lumps: out of memory");
-    SWARF_TRY(swarf_parallel_for(nodes, find_in_node, f, progress, 0, 1));
+    SWARF_TRY(swarf_parallel_for(nodes, find_in_node, f, f->progress, 0, parted));
     SWARF_TRY(number_parts(f));
-    join_neighbours(f);
+    SWARF_TRY(join_neighbours(f));
     return gather_lumps(f, out);
 }
 
@@ -301,14 +316,15 @@ swarf_status swarf_lumps_create(swarf_stock *stock, const double *points, size_t
     if (!made) return swarf_fail(SWARF_ERROR_MEMORY, "lumps: out of memory");
     swarf_status status = swarf_stock_enter_read(stock);
     if (status == SWARF_OK) {
-        finding f = {.stock = stock, .layout = swarf_tree_get_layout(stock->tree)};
-        status = find(&f, progress, made);
-        if (status == SWARF_OK) find_points(&f, made, points, point_count, lump_of);
+        finding f = {.stock = stock, .layout = swarf_tree_get_layout(stock->tree), .progress = progress};
+        status = find(&f, made);
+        if (status == SWARF_OK) find_points(&f, points, point_count, lump_of);
         for (size_t n = 0; f.of_node && n < swarf_layout_nodes(f.layout); n++) free(f.of_node[n].part);
         free(f.of_node);
         free(f.part_at);
         free(f.parts_at);
         free(f.all);
+        free(f.lump_at);
         swarf_stock_leave(stock);
     }
     if (status != SWARF_OK) {

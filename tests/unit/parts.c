@@ -314,6 +314,57 @@ static void check_lumps(void)
     swarf_stock_destroy(stock);
 }
 
+static int stop_late(void *user, double fraction)
+{
+    double *last = user;
+    *last = fraction;
+    return fraction > 0.65;
+}
+
+/* A plate sawn into tiles of different sizes: every tile's own voxel is in it, the air between is in none; and it can
+ * be stopped after the leaves have been looked at. */
+static void check_tiles(void)
+{
+    enum { WAYS = 9 };
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = 0.2;
+    const swarf_box block = {{0, 0, -1}, {40, 40, 0}};
+    swarf_stock *stock = NULL;
+    swarf_cutter *cutter = NULL;
+    CHECK_OK(swarf_cutter_parse("flat:d=1,l=20", &cutter));
+    CHECK_OK(swarf_stock_create_box(&block, &options, &stock));
+    for (int i = 1; i <= WAYS; i++) { /* further and further apart */
+        const double at = 2 * i + 0.2 * i * i;
+        const swarf_path along[2] = {{.start = {at, -5, -2}, .end = {at, 45, -2}, .has_motion = 1},
+                                     {.start = {-5, at, -2}, .end = {45, at, -2}, .has_motion = 1}};
+        CHECK_OK(swarf_stock_cut(stock, cutter, along, 2, NULL));
+    }
+    swarf_lumps *lumps = NULL;
+    size_t count = 0;
+    CHECK_OK(swarf_lumps_create(stock, NULL, 0, NULL, NULL, &lumps));
+    const swarf_lump *lump = swarf_lumps_get(lumps, &count);
+    CHECK(count == (WAYS + 1) * (WAYS + 1));
+    double *points = malloc(3 * (count + 1) * sizeof *points);
+    uint32_t *lump_of = malloc((count + 1) * sizeof *lump_of);
+    for (size_t i = 0; i < count; i++) memcpy(points + 3 * i, lump[i].inside, sizeof lump[i].inside);
+    memcpy(points + 3 * count, (double[]){2.2, 20, -0.5}, 3 * sizeof *points);
+    swarf_lumps_destroy(lumps);
+    lumps = NULL;
+    CHECK_OK(swarf_lumps_create(stock, points, count + 1, NULL, lump_of, &lumps));
+    for (size_t i = 0; i < count; i++) CHECK(lump_of[i] == i);
+    CHECK(lump_of[count] == UINT32_MAX);
+    swarf_lumps_destroy(lumps);
+    lumps = NULL;
+    double last = 0;
+    const swarf_progress progress = {stop_late, &last};
+    CHECK_FAILS(swarf_lumps_create(stock, NULL, 0, &progress, NULL, &lumps), SWARF_ERROR_CANCELLED, "");
+    CHECK(last > 0.65 && last < 1 && !lumps);
+    free(points);
+    free(lump_of);
+    swarf_cutter_release(cutter);
+    swarf_stock_destroy(stock);
+}
+
 int main(void)
 {
     check_splits();
@@ -322,5 +373,6 @@ int main(void)
     check_thickness();
     check_draft();
     check_lumps();
+    check_tiles();
     return test_end();
 }
