@@ -28,6 +28,9 @@ void swarf_mesh_data_free(swarf_mesh_data *data);
 /** A mesh of the data, which it takes over, also on failure. */
 swarf_status swarf_mesh_adopt(swarf_mesh_data *data, swarf_mesh **out);
 
+/** Unit normal of a plane, of a normal of any length. SWARF_ERROR_ARGUMENT: not finite, no length. */
+swarf_status swarf_plane_take(const double point[3], const double normal[3], double unit[3]);
+
 /** Readers of a whole file in memory (followed by a 0 byte); `name` is used in errors. On failure the caller frees
  *  what was gathered. */
 swarf_status swarf_stl_read(const char *text, size_t length, const char *name, swarf_mesh_data *out);

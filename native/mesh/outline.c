@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/status.h"
 #include "mesh/halfedge.h"
-#include "swarf/mesh.h"
+#include "mesh/mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -103,19 +103,31 @@ static swarf_status cut(cutting *c)
     return SWARF_OK;
 }
 
+swarf_status swarf_plane_take(const double point[3], const double normal[3], double unit[3])
+{
+    double most = 0, square = 0;
+    for (int k = 0; k < 3; k++) {
+        SWARF_REQUIRE(isfinite(point[k]) && isfinite(normal[k]), "mesh: the plane is not finite");
+        most = fmax(most, fabs(normal[k]));
+    }
+    SWARF_REQUIRE(most > 0, "mesh: the plane's normal has no length");
+    for (int k = 0; k < 3; k++) { /* squares of what is far from 1 would not be numbers */
+        unit[k] = normal[k] / most;
+        square += unit[k] * unit[k];
+    }
+    for (int k = 0; k < 3; k++) unit[k] /= sqrt(square);
+    return SWARF_OK;
+}
+
 swarf_status swarf_outline_create(const swarf_mesh *mesh, const double point[3], const double normal[3],
                                   swarf_outline **out)
 {
     SWARF_REQUIRE(mesh && point && normal && out, "mesh: NULL");
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        SWARF_REQUIRE(isfinite(point[k]) && isfinite(normal[k]), "mesh: the plane is not finite");
-        square += normal[k] * normal[k];
-    }
-    SWARF_REQUIRE(square > 0, "mesh: the plane's normal has no length");
+    double unit[3];
+    SWARF_TRY(swarf_plane_take(point, normal, unit));
     uint32_t *opposite = NULL;
     swarf_outline *s = calloc(1, sizeof *s);
-    cutting c = {.t = swarf_mesh_triangles(mesh), .point = point, .normal = normal, .out = s};
+    cutting c = {.t = swarf_mesh_triangles(mesh), .point = point, .normal = unit, .out = s};
     c.seen = calloc(c.t.triangle_count + 1, 1);
     swarf_status status = s && c.seen ? swarf_halfedges_create(&c.t, &opposite)
                                       : swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for a section");

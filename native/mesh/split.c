@@ -36,18 +36,11 @@ static void cross(const double a[3], const double b[3], double out[3])
 
 static swarf_status take_plane(splitting *s, const double point[3], const double normal[3])
 {
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        SWARF_REQUIRE(isfinite(point[k]) && isfinite(normal[k]), "mesh: the plane is not finite");
-        square += normal[k] * normal[k];
-    }
-    SWARF_REQUIRE(square > 0, "mesh: the plane's normal has no length");
+    SWARF_TRY(swarf_plane_take(point, normal, s->n));
     memcpy(s->point, point, sizeof s->point);
     int least = 0;
-    for (int k = 0; k < 3; k++) {
-        s->n[k] = normal[k] / sqrt(square);
+    for (int k = 1; k < 3; k++)
         if (fabs(s->n[k]) < fabs(s->n[least])) least = k;
-    }
     double axis[3] = {0};
     axis[least] = 1;
     cross(axis, s->n, s->u);

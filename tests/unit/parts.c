@@ -31,7 +31,7 @@ static void check_split(const swarf_mesh *mesh, const double point[3], const dou
     swarf_mesh *part[2] = {NULL, NULL};
     if (!CHECK_OK(swarf_mesh_split(mesh, point, normal, &part[0], &part[1]))) return;
     double sum = 0;
-    const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    const double length = hypot(hypot(normal[0], normal[1]), normal[2]);
     for (int i = 0; i < 2; i++) {
         check_closed(part[i]);
         sum += swarf_mesh_topology(part[i]).volume_mm3;
@@ -59,6 +59,8 @@ static void check_splits(void)
     check_split(box, (double[]){0, 0, 4.5}, (double[]){0, 0, 2}, 10 * 6 * 1.5);
     check_split(box, (double[]){0, 0, 4.5}, (double[]){0, 0, -1}, 10 * 6 * 2.5);
     check_split(box, (double[]){6, 5, 5}, (double[]){1, 0.3, -0.2}, 120);
+    const double length[2] = {1e200, 1e-200}; /* their squares are no numbers */
+    for (int i = 0; i < 2; i++) check_split(box, (double[]){3, 0, 0}, (double[]){length[i], 0, 0}, 2 * 6 * 4);
     check_split(box, lo, (double[]){0.6, 1, 0}, 0.5 * 0 + 0);       /* through an edge, nothing below */
     check_split(box, lo, (double[]){0.6, -1, 0}, 4 * 0.5 * 10 * 6); /* through two edges: a diagonal */
     check_split(box, (double[]){0, 0, 3}, (double[]){0, 0, 1}, 0);  /* a face in the plane */
