@@ -3,6 +3,7 @@
 
 #include "base/status.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,6 +37,13 @@ size_t swarf_memory_free(void)
         if (left < bytes) bytes = left;
     }
     return bytes;
+}
+
+double swarf_memory_limit(size_t asked)
+{
+    if (asked) return (double)asked;
+    const size_t left = swarf_memory_free();
+    return left == SIZE_MAX ? INFINITY : 0.8 * (double)left;
 }
 
 size_t swarf_memory_peak(void)

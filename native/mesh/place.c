@@ -48,25 +48,39 @@ swarf_status swarf_mesh_create_placed(const swarf_mesh *mesh, const swarf_placem
     return status;
 }
 
+/* Vertices are floats: they are turned about their own middle, and the shift goes into the place of the new stock's
+ * voxels, which is a double. */
 static swarf_status turn_mesh(const swarf_mesh *mesh, const swarf_placement *placement, double voxel,
-                              const swarf_place_options *options, const swarf_progress *progress, swarf_stock **out)
+                              const swarf_place_options *options, const swarf_progress *filling,
+                              const swarf_progress *moving, swarf_stock **out)
 {
+    const swarf_box box = swarf_mesh_topology(mesh).box;
+    swarf_placement about = *placement, rest = swarf_placement_identity();
+    double middle[3];
+    for (int k = 0; k < 3; k++) middle[k] = 0.5 * (box.lo[k] + box.hi[k]);
+    swarf_placement_direction(placement, middle, about.shift);
+    for (int k = 0; k < 3; k++) about.shift[k] = -about.shift[k];
+    swarf_placement_point(placement, middle, rest.shift);
     swarf_mesh *turned;
-    SWARF_TRY(swarf_mesh_create_placed(mesh, placement, &turned));
+    SWARF_TRY(swarf_mesh_create_placed(mesh, &about, &turned));
     const swarf_triangles t = swarf_mesh_triangles(turned);
     swarf_stock_options made = swarf_stock_options_default();
     made.voxel_mm = voxel;
     made.memory_limit = options->memory_limit;
-    const swarf_status status = swarf_stock_create_mesh(&t, &made, progress, out);
+    swarf_stock *here = NULL;
+    swarf_status status = swarf_stock_create_mesh(&t, &made, filling, &here);
     swarf_mesh_release(turned);
+    if (status == SWARF_OK) status = swarf_stock_turn(here, &rest, options->memory_limit, moving, out);
+    swarf_stock_destroy(here);
     return status;
 }
 
 static swarf_status place_by_mesh(swarf_stock *stock, const swarf_placement *placement, double voxel,
                                   const swarf_place_options *options, const swarf_progress *progress, swarf_stock **out)
 {
-    struct share first = {progress, 0, 0.5}, second = {progress, 0.5, 1};
-    const swarf_progress contouring = {report_share, &first}, filling = {report_share, &second};
+    struct share first = {progress, 0, 0.5}, second = {progress, 0.5, 0.95}, third = {progress, 0.95, 1};
+    const swarf_progress contouring = {report_share, &first}, filling = {report_share, &second},
+                         moving = {report_share, &third};
     swarf_contour_options wanted = swarf_contour_options_default();
     wanted.error_mm = mesh_error * fmin(voxel, swarf_stock_voxel(stock));
     wanted.surface = options->surface;
@@ -75,7 +89,7 @@ static swarf_status place_by_mesh(swarf_stock *stock, const swarf_placement *pla
     SWARF_TRY(swarf_mesh_contour(stock, &wanted, progress ? &contouring : NULL, &mesh, NULL));
     const swarf_status status =
         swarf_mesh_triangles(mesh).triangle_count
-            ? turn_mesh(mesh, placement, voxel, options, progress ? &filling : NULL, out)
+            ? turn_mesh(mesh, placement, voxel, options, progress ? &filling : NULL, progress ? &moving : NULL, out)
             : swarf_fail(SWARF_ERROR_GEOMETRY, "stock: nothing is left of it that could be set up again");
     swarf_mesh_release(mesh);
     return status;
@@ -93,7 +107,7 @@ swarf_status swarf_stock_place(swarf_stock *stock, const swarf_placement *placem
     SWARF_REQUIRE(isfinite(voxel) && voxel > 0, "stock: voxel size %g mm is not a positive number", voxel);
     int axis[3], sign[3];
     const int kept = swarf_placement_quarters(placement, axis, sign) && fabs(voxel - own) <= 1e-9 * own;
-    SWARF_TRY(kept ? swarf_stock_turn(stock, placement, progress, out)
+    SWARF_TRY(kept ? swarf_stock_turn(stock, placement, options->memory_limit, progress, out)
                    : place_by_mesh(stock, placement, voxel, options, progress, out));
     if (lossless) *lossless = kept;
     return SWARF_OK;

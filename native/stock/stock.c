@@ -71,12 +71,7 @@ swarf_status swarf_stock_layout(const swarf_box *box, const swarf_stock_options 
     SWARF_REQUIRE(options && options->size == sizeof *options, "stock: options missing or of another version");
     const double voxel = options->voxel_mm;
     SWARF_TRY(check_box(box, voxel));
-    double limit = (double)options->memory_limit;
-    if (options->memory_limit == 0) {
-        const size_t left = swarf_memory_free();
-        limit = left == SIZE_MAX ? INFINITY : 0.8 * (double)left;
-    }
-    const double wanted = estimate(box, voxel);
+    const double limit = swarf_memory_limit(options->memory_limit), wanted = estimate(box, voxel);
     if (wanted > limit) {
         /* from where it cannot fit, whatever was asked for: 5e-324 * 1.05 is 5e-324 */
         const double edge = fmax(box->hi[0] - box->lo[0], fmax(box->hi[1] - box->lo[1], box->hi[2] - box->lo[2]));

@@ -6,6 +6,7 @@
  * and the shift goes into the place of the layout's first voxel, which may be anywhere. */
 #include "stock/turn.h"
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/status.h"
 #include "stock/leaf.h"
@@ -87,8 +88,19 @@ static swarf_status turn_tree(struct turning *t, const swarf_placement *placemen
     return SWARF_OK;
 }
 
-swarf_status swarf_stock_turn(swarf_stock *stock, const swarf_placement *placement, const swarf_progress *progress,
-                              swarf_stock **out)
+/* The copy is as large as what is copied. */
+static swarf_status check_size(const swarf_tree *tree, size_t memory_limit)
+{
+    size_t leaves, bytes;
+    swarf_tree_size(tree, &leaves, &bytes);
+    const double limit = swarf_memory_limit(memory_limit);
+    if ((double)bytes <= limit) return SWARF_OK;
+    return swarf_fail(SWARF_ERROR_MEMORY, "stock: turned it needs %.3g GiB, %.3g GiB may be used",
+                      (double)bytes / 0x1p30, limit / 0x1p30);
+}
+
+swarf_status swarf_stock_turn(swarf_stock *stock, const swarf_placement *placement, size_t memory_limit,
+                              const swarf_progress *progress, swarf_stock **out)
 {
     SWARF_REQUIRE(stock && placement && out, "stock: NULL");
     struct turning t = {.from = stock};
@@ -96,7 +108,8 @@ swarf_status swarf_stock_turn(swarf_stock *stock, const swarf_placement *placeme
     SWARF_TRY(swarf_stock_enter_write(stock)); /* untouched faces stay without leaves */
     t.old = swarf_tree_get_layout(stock->tree);
     swarf_stock *turned = NULL;
-    swarf_status status = turn_tree(&t, placement, progress);
+    swarf_status status = check_size(stock->tree, memory_limit);
+    if (status == SWARF_OK) status = turn_tree(&t, placement, progress);
     if (status == SWARF_OK) status = swarf_stock_wrap(t.to, &turned);
     if (status == SWARF_OK) {
         turned->untouched = stock->untouched;

@@ -181,6 +181,16 @@ static void check_untouched(void)
     CHECK_NEAR(volume_of(cut), volume_of(turned), 1e-7 * volume_of(turned));
     swarf_surface *surface = NULL;
     CHECK_OK(swarf_surface_create(cut, k.program, &k.tool, 1, NULL, &surface)); /* a block that was cut is none */
+    swarf_surface_near *near = NULL;
+    CHECK_OK(swarf_surface_near_create(surface, &near));
+    const double floor[3] = {10, -SLOT_Y, -SLOT_Z};
+    const swarf_box around = {{9.5, -SLOT_Y - 0.5, -SLOT_Z - 0.5}, {10.5, -SLOT_Y + 0.5, -SLOT_Z + 0.5}};
+    CHECK_OK(swarf_surface_gather(near, 0, &around));
+    swarf_surface_point seen = {.value = NAN};
+    swarf_surface_evaluate(near, floor, &seen); /* of its slot, which the block does not have */
+    CHECK_NEAR(seen.value, 0, 0.01 * voxel);
+    CHECK(seen.move == -1 && fabs(seen.normal[2] + 1) < 0.01);
+    swarf_surface_near_destroy(near);
     swarf_surface_release(surface);
     swarf_stock_destroy(turned);
     swarf_stock_destroy(plain);
@@ -256,9 +266,10 @@ static void check_cost(void)
             trilinear = fmax(trilinear, fabs((double)value - first_distance(p)) / voxel);
     }
     CHECK(trilinear > 0.1);
-    const double angle[3][3] = {{pi, 0, 0}, {0, 0, 0.3}, {0.5, -0.4, 0.7}};
-    for (int i = 0; i < 3; i++) {
-        const swarf_placement there = make_placement(angle[i], (double[]){3.3, -70.7, 12.1}),
+    const double angle[4][3] = {{pi, 0, 0}, {0, 0, 0.3}, {0.5, -0.4, 0.7}, {0.5, -0.4, 0.7}};
+    for (int i = 0; i < 4; i++) {
+        const double near[3] = {3.3, -70.7, 12.1}, far[3] = {9e5, -8e5, 7e5}; /* where floats are 0.06 mm apart */
+        const swarf_placement there = make_placement(angle[i], i < 3 ? near : far),
                               back = swarf_placement_inverse(&there);
         swarf_stock *exact = place(stock, &there, surface, i ? 0 : 0.13, 0),
                     *plain = place(stock, &there, NULL, 0.2001, 0);
@@ -359,6 +370,11 @@ static void check_errors(void)
     swarf_stock *stock = make_block(1), *placed = NULL;
     const swarf_placement turn = make_placement((double[]){0, 0, 0.3}, (double[]){0, 0, 0});
     swarf_place_options options = swarf_place_options_default();
+    const swarf_placement over = make_placement((double[]){pi, 0, 0}, (double[]){0, 0, 0});
+    options = swarf_place_options_default();
+    options.memory_limit = 10000;
+    CHECK_FAILS(swarf_stock_place(stock, &over, &options, NULL, &placed, NULL), SWARF_ERROR_MEMORY, "turned it needs");
+    options.memory_limit = 0;
     /* filled by hand: refused wherever one goes in, and no quarter turn */
     const swarf_placement bad[4] = {{.rotation = {{1, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
                                     {.rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}},
