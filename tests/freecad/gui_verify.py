@@ -255,8 +255,15 @@ class Verifying(PanelTest):
         page.clearance.setValue(2.0)
         self.checked()
         assert self.settings.clearance() == 2.0
+        # changed again just before the end of a check: that was made with the old one
+        panel.findings.run.click()
+        worker = panel.checking._worker
+        worker.join(60)
         page.clearance.setValue(0.0)
+        wait_for(lambda: panel.checking._worker is not worker, "the end of the check")
+        measured = panel.checking.outcome.verification.result
         self.checked()
+        assert panel.checking.outcome.verification.result is not measured, "judged, not checked"
 
     def typing(self, document, job):
         """Into the page while the job is read and cut: it stays, and nothing is told before it is finished."""
