@@ -153,6 +153,9 @@ class ExportPanel:
         try:
             if error is not None:
                 raise error
+            if self.made.unfinished:  # FreeCAD's part, here: nothing else is painted meanwhile
+                self.message.setText(translate("Swarf", "Making the shape ..."))
+                self.message.repaint()
             self.made.finish()
         except (JobError, OSError, RuntimeError, ValueError, MemoryError, native.load().Error) as problem:
             self.fail(problem)

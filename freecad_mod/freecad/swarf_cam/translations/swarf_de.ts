@@ -431,6 +431,10 @@
             <translation>Lose Stücke</translation>
         </message>
         <message>
+            <source>Making the shape ...</source>
+            <translation>Der Körper wird erstellt ...</translation>
+        </message>
+        <message>
             <source>Material</source>
             <translation>Material</translation>
         </message>
