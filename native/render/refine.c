@@ -46,7 +46,7 @@ static void give(const swarf_look *look, const batch *b, size_t i, int moved, sw
         sight->normal[axis] = (float)b->normal[3 * i + axis];
     }
     sight->distance += way;
-    sight->move = (int32_t)b->move[i];
+    sight->move = b->move[i] < 0 ? -1 : (int32_t)b->move[i]; /* what set-ups before cut is the stock as it was */
 }
 
 static swarf_status refine(const swarf_look *look, batch *b, swarf_sight *sights)

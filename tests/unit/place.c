@@ -288,6 +288,25 @@ static void check_cost(void)
     end_job(&j);
 }
 
+/* What an earlier set-up cut is, in a picture of this one, the stock as it was. */
+static void check_pick(swarf_stock *turned, swarf_surface *surface, const swarf_placement *over)
+{
+    double floor[3] = {3, SLOT_Y, SLOT_Z};
+    swarf_placement_point(over, floor, floor);
+    const swarf_box around = {{floor[0] - 1, floor[1] - 1, floor[2] - 1}, {floor[0] + 1, floor[1] + 1, floor[2] + 1}};
+    const swarf_picture_options options = swarf_picture_options_default();
+    swarf_scene *scene = NULL;
+    swarf_camera camera;
+    swarf_pick pick = {0};
+    CHECK_OK(swarf_scene_create(turned, &scene));
+    CHECK_OK(swarf_scene_set_surface(scene, surface, SIZE_MAX));
+    CHECK_OK(swarf_camera_fit(SWARF_VIEW_BOTTOM, 0, &around, 1, &camera));
+    CHECK_OK(swarf_scene_pick(scene, &camera, &options, 0, 0, &pick));
+    CHECK(pick.seen == SWARF_SEEN_STOCK && pick.move == -1);
+    CHECK_NEAR(pick.point[2], floor[2], 1e-3);
+    swarf_scene_destroy(scene);
+}
+
 /* Turned over and cut again: every vertex of the mesh on the true surface of both set-ups, and it tells of which. */
 static void check_chain(const double angle[3], int lossless)
 {
@@ -345,6 +364,7 @@ static void check_chain(const double angle[3], int lossless)
     }
     CHECK(seen[0] > 3 && seen[1] > 3 && shape > 5);
     free(points);
+    if (lossless) check_pick(turned, second, &over);
     swarf_mesh_release(mesh);
     swarf_surface_release(first);
     swarf_surface_release(second);
