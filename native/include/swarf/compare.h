@@ -110,10 +110,9 @@ SWARF_API swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, co
  *  well. `size` bytes at most. */
 SWARF_API swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, char *text, size_t size);
 
-/** How deep (mm, 0: not at all) a solid - a fixture - reaches into a stock, and a voxel's centre where; no more than
- * six voxels are told. Where faces meet it is good to a hundredth of a voxel, beside edges to 0.3: less than that is
- * none.
- */
+/** How deep (mm) a solid - a fixture - reaches into a stock, and a voxel's centre where; no more than six voxels are
+ *  told. Where faces meet it is good to a hundredth of a voxel; beside edges distances run short, so that up to 0.35
+ *  voxel of depth may be told where nothing overlaps: the caller takes no more than that for none. */
 SWARF_API swarf_status swarf_compare_overlap(swarf_stock *stock, const swarf_solid *solid,
                                              const swarf_progress *progress, double *depth, double point[3]);
 
