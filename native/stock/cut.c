@@ -19,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { LINE_FLOATS = 64 / sizeof(float) };
 enum { COLUMN = 32, COLUMN_LEAVES = COLUMN / SWARF_LEAF_DIM, NODE_COLUMNS = SWARF_NODE_DIM / COLUMN };
 
 /* What is seen of one column while it is worked on: how deep tracks go into the stock at most, and where in voxels of
@@ -211,6 +212,21 @@ static swarf_block block_of(const swarf_column *column, const int32_t at[3], int
                          (float)(at[2] * SWARF_LEAF_DIM - column->middle[2]) + half, half, half};
 }
 
+/* Leaves lie anywhere in memory: what will be read soon is asked for ahead, the leaf itself while tracks are culled,
+ * its values while the leaf before it is cut. */
+static void fetch_leaf(const struct cut_work *work, const int32_t at[3])
+{
+    const struct place place = place_of(work->layout, at[0], at[1], at[2]);
+    swarf_tree_leaf_fetch(work->stock->tree, place.node, place.slot);
+}
+
+static void fetch_values(const struct cut_work *work, const int32_t at[3])
+{
+    const struct place place = place_of(work->layout, at[0], at[1], at[2]);
+    const float *values = swarf_tree_leaf(work->stock->tree, place.node, place.slot);
+    for (int i = 0; values && i < SWARF_LEAF_SIZE; i += LINE_FLOATS) __builtin_prefetch(values + i, 1);
+}
+
 /* A cube of `edge` leaves at a place in leaves, with the tracks that concern it. */
 static swarf_status cut_cube(const struct cut_work *work, struct touch *touch, const swarf_column *column,
                              const int32_t *list, size_t count, const int32_t at[3], int edge)
@@ -226,9 +242,12 @@ static swarf_status cut_cube(const struct cut_work *work, struct touch *touch, c
         if (!occupied(work->layout, place[0], place[1], place[2], next)) continue;
         memcpy(places[used], place, sizeof place);
         blocks[used++] = block_of(column, place, next);
+        if (next == 1) fetch_leaf(work, place);
     }
     const unsigned covered = work->kernel->cull(work->body, column, list, count, blocks, used, kept, left);
+    if (next == 1 && used && left[0]) fetch_values(work, places[0]);
     for (size_t i = 0; i < used; i++) {
+        if (next == 1 && i + 1 < used && left[i + 1]) fetch_values(work, places[i + 1]);
         if (covered >> i & 1)
             SWARF_TRY(remove_cube(work, touch, places[i][0], places[i][1], places[i][2], next));
         else if (left[i])

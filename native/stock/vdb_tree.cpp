@@ -254,6 +254,11 @@ extern "C" float *swarf_tree_leaf(const swarf_tree *tree, size_t node, unsigned 
     return leaf ? leaf->buffer().data() : nullptr;
 }
 
+extern "C" void swarf_tree_leaf_fetch(const swarf_tree *tree, size_t node, unsigned slot)
+{
+    __builtin_prefetch(leaf_of(tree, node, slot));
+}
+
 extern "C" int swarf_tree_tile_inside(const swarf_tree *tree, size_t node, unsigned slot)
 {
     return tree->nodes[node]->getTable()[slot].getValue() < 0;

@@ -57,6 +57,8 @@ void swarf_tree_stamp_all(swarf_tree *tree, uint32_t generation);
 
 /** Values of the leaf in a slot, NULL where it is a tile; who changes them calls swarf_tree_leaf_mask() then. */
 float *swarf_tree_leaf(const swarf_tree *tree, size_t node, unsigned slot);
+/** Have the processor fetch what swarf_tree_leaf() will read. */
+void swarf_tree_leaf_fetch(const swarf_tree *tree, size_t node, unsigned slot);
 /** Of a slot that is a tile: 1 inside, 0 outside. */
 int swarf_tree_tile_inside(const swarf_tree *tree, size_t node, unsigned slot);
 /** Make a slot a leaf with these 512 values and active mask (8 words), and occupied. May fail on memory. */
