@@ -65,6 +65,6 @@ __all__ = [
     "BusyError", "Camera", "Cancelled", "Check", "CheckFinding", "Cluster", "Comparison", "Contour", "Cutter",
     "Deviation", "Error", "Finding", "FormatError", "GeometryError", "Held", "History", "Job", "Lump", "Mesh", "Pick",
     "Picture", "Program", "Result", "Scene", "Shell", "Simulation", "Solid", "Stock", "Surface", "Verification",
-    "compare_overlap", "compare_place", "compare_volume", "deviation_colours", "isa", "measure_deviation", "memory_peak",
-    "picture_colour", "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
+    "compare_overlap", "compare_place", "compare_volume", "deviation_colours", "isa", "measure_deviation",
+    "memory_peak", "picture_colour", "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
 ]

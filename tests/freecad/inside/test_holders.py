@@ -51,7 +51,6 @@ class TestHolders(unittest.TestCase):
                 holders.assign(self.controller, "ER16", stickout)
         self.assertIsNone(holders.holder_of(self.controller))
 
-    @unittest.skipUnless(native.is_available(), "the native module is not installed")
     def test_the_cutter_has_it(self):
         self.assign("ER16", 35.0)
         job = native.to_job(jobs.read_job(self.job))
@@ -86,8 +85,7 @@ class TestHolders(unittest.TestCase):
         accepted.accept(self.job, {"reason": "moved", "line": 3})
         self.document.commitTransaction()
         self.assertEqual([entry["reason"] for entry in jobs.read_job(self.job).accepted], ["sanded", "moved"])
-        if native.is_available():
-            self.assertEqual(native.to_job(jobs.read_job(self.job)).accepted[1].line, 3)
+        self.assertEqual(native.to_job(jobs.read_job(self.job)).accepted[1].line, 3)
         self.document.undo()
         self.assertEqual(accepted.accepted_of(self.job), [])
         with self.assertRaisesRegex(JobError, "reason"):
@@ -181,7 +179,6 @@ class TestFixtures(unittest.TestCase):
         self.document.removeObject("Clamp")
         self.assertEqual(jobs.read_job(self.job).fixtures, [])
 
-    @unittest.skipUnless(native.is_available(), "the native module is not installed")
     def test_an_open_mesh_is_named(self):
         sheet = self.document.addObject("Mesh::Feature", "Sheet")
         sheet.Mesh = Mesh.Mesh([[[0, 0, 0], [9, 0, 0], [0, 9, 0]]])

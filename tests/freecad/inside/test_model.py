@@ -17,7 +17,6 @@ VOXEL = 0.5
 LEFT = 40 * 20 * 10 - 40 * 6 * 2
 
 
-@unittest.skipUnless(native.is_available(), "the native module is not installed")
 class TestModel(unittest.TestCase):
     def setUp(self):
         self.document = samples.new_document(self)

@@ -65,7 +65,6 @@ def cuts(program):
     return result
 
 
-@unittest.skipUnless(native.is_available(), "the native module is not installed")
 @unittest.skipUnless(post and utility, "FreeCAD has no linuxcnc post")
 class TestPost(unittest.TestCase):
     def differences(self, posted, own):

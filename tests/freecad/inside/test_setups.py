@@ -21,7 +21,6 @@ FIRST, SECOND = 40 * 6 * 2.0, 20 * 6 * 9.0
 BOTH = FIRST + SECOND - 6 * 6 * 1
 
 
-@unittest.skipUnless(native.is_available(), "the native module is not installed")
 class TestSetUps(unittest.TestCase):
     def setUp(self):
         self.document = samples.new_document(self)

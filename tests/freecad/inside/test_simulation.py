@@ -17,7 +17,6 @@ VOXEL = 0.5
 SLOT = 40 * 6 * 2.0
 
 
-@unittest.skipUnless(native.is_available(), "the native module is not installed")
 class TestSimulation(unittest.TestCase):
     def setUp(self):
         self.document = samples.new_document(self)
