@@ -307,6 +307,9 @@ swarf_status swarf_scene_render(swarf_scene *scene, const swarf_camera *camera, 
     swarf_look_end(&c.look);
     free(c.sky);
     free(c.sun);
+    free(c.edge);
+    free(c.outline);
+    free(c.room);
     return status;
 }
 

@@ -6,6 +6,9 @@
  *   colour   of the squares, linear, premultiplied
  *   sky      how much of the sky is open, per square; NULL: all of it
  *   sun      255 where the light reaches, per square; NULL: everywhere
+ *   edge     how much of an edge the middle of a square is on, 0 .. 255; NULL: edges are not drawn
+ *   outline  the same of outlines
+ *   room     how dark a line that is no outline may be in a square, 0 .. 255: less where they crowd
  */
 #ifndef SWARF_RENDER_PICTURE_H
 #define SWARF_RENDER_PICTURE_H
@@ -26,6 +29,7 @@ typedef struct swarf_canvas {
     float (*colour)[4];
     float *sky;
     uint8_t *sun;
+    uint8_t *edge, *outline, *room;
 } swarf_canvas;
 
 /** Place -1 .. 1 of the part 0 .. 1 of a grid square; squares at the right and lower rim may lie partly beyond the

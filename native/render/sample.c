@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Shading the squares of a picture, with n x n samples for those that are rough: where a square and its eight
- * neighbours do not see one smooth face.
+ * neighbours do not see one smooth face, and it shows: by a line, or by colours that differ.
  *
  * Strips of 64 rows one after the other, on all cores each. A strip keeps the samples of its rough squares and of the
  * row on either side, for a sample is on an edge when half a square away something else is seen:
@@ -10,6 +10,7 @@
  */
 #include "base/parallel.h"
 #include "base/status.h"
+#include "render/edges.h"
 #include "render/picture.h"
 #include "render/refine.h"
 
@@ -23,17 +24,14 @@ enum { STRIP = 64 };
  * their distance, so that steps of more than 1/20 pixel show. Larger values save rays and leave jagged edges. */
 static const float same_face_cosine = 0.999f, same_face_slope = 0.05f;
 
-/* An edge is drawn from 18 degrees on, in full from 40: the facets that a tool leaves on curved surfaces are not. */
-static const float edge_cosine_least = 0.951f, edge_cosine_full = 0.766f;
-/* One thing hides another when it stands this many squares before it: from, and in full. */
-static const float step_least = 0.9f, step_full = 2.0f;
-static const float edge_colour[3] = {0.012f, 0.015f, 0.022f};
-static const float edge_strength = 0.8f;
+/* Colours that differ by less than this part of white, as they are shown, make no jagged edge that one could see. */
+static const float same_colour = 4.0f / 255;
 
 typedef struct strip {
     swarf_canvas *canvas;
-    int32_t top, rows; /* with a row more on either side where there is one */
-    int32_t own, end;  /* rows of the canvas whose colours are this strip's */
+    const uint8_t *is_rough; /* per square of the canvas */
+    int32_t top, rows;       /* with a row more on either side where there is one */
+    int32_t own, end;        /* rows of the canvas whose colours are this strip's */
     int32_t *number;
     size_t *count; /* rough squares of a row, then those of the rows before it */
     size_t *rough; /* squares of the canvas */
@@ -57,48 +55,30 @@ static int is_same_face(const swarf_sight *a, const swarf_sight *b)
     return cosine > same_face_cosine && off_a * off_a <= most && off_b * off_b <= most;
 }
 
+/** Whether colours (linear, premultiplied) look different. What is shown is about the root of it: a - b over the sum of
+ *  the roots, whose square is about twice a + b. */
+static int is_same_colour(const float a[4], const float b[4])
+{
+    for (int channel = 0; channel < 4; channel++) {
+        const float off = a[channel] - b[channel];
+        if (off * off > 2 * same_colour * same_colour * (a[channel] + b[channel])) return 0;
+    }
+    return 1;
+}
+
 static int is_rough(const swarf_canvas *c, int32_t x0, int32_t y0)
 {
-    const swarf_sight *own = &c->middle[swarf_canvas_at(c, x0, y0)];
+    const size_t own = swarf_canvas_at(c, x0, y0);
     for (int32_t y = y0 - 1; y <= y0 + 1; y++)
-        for (int32_t x = x0 - 1; x <= x0 + 1; x++)
-            if (x >= 0 && y >= 0 && x < c->width && y < c->height &&
-                !is_same_face(own, &c->middle[swarf_canvas_at(c, x, y)]))
+        for (int32_t x = x0 - 1; x <= x0 + 1; x++) {
+            if (x < 0 || y < 0 || x >= c->width || y >= c->height) continue;
+            const size_t other = swarf_canvas_at(c, x, y);
+            if (is_same_face(&c->middle[own], &c->middle[other])) continue;
+            if (c->middle[own].seen != c->middle[other].seen || (c->edge && (c->edge[own] || c->edge[other])) ||
+                !is_same_colour(c->colour[own], c->colour[other]))
                 return 1;
+        }
     return 0;
-}
-
-static float smooth_step(float from, float to, float x)
-{
-    const float part = (x - from) / (to - from), t = part > 0 ? (part < 1 ? part : 1) : 0;
-    return t * t * (3 - 2 * t);
-}
-
-/** How much of an edge there is at `a` towards `b`. Where one hides the other it belongs to the nearer. */
-static float edge_between(const swarf_look *look, const swarf_sight *a, const swarf_sight *b, int creases)
-{
-    if (a->seen == SWARF_SEEN_NOTHING) return 0;
-    if (a->seen != b->seen) return a->distance <= b->distance;
-    float cosine = 0, off_a = 0, off_b = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        const float step = b->point[axis] - a->point[axis];
-        cosine += a->normal[axis] * b->normal[axis];
-        off_a += step * a->normal[axis];
-        off_b += step * b->normal[axis];
-    }
-    const float crease = creases ? smooth_step(edge_cosine_least, edge_cosine_full, cosine) : 0;
-    if (a->distance > b->distance) return crease;
-    const float off = fabsf(off_a) < fabsf(off_b) ? fabsf(off_a) : fabsf(off_b);
-    const float step = smooth_step(step_least, step_full, off / (float)swarf_look_footprint(look, a));
-    return crease > step ? crease : step;
-}
-
-static void draw_edge(float colour[4], float strength)
-{
-    const float part = edge_strength * strength;
-    for (int channel = 0; channel < 3; channel++)
-        colour[channel] = (1 - part) * colour[channel] + part * edge_colour[channel];
-    colour[3] = (1 - part) * colour[3] + part;
 }
 
 /** What there is to shade of a sight in square (x, y), at the part of its height. */
@@ -118,53 +98,60 @@ static swarf_spot spot_of(const swarf_canvas *c, int32_t x, int32_t y, double pa
                         c->sun && same ? (float)c->sun[at] / 255 : 1, value};
 }
 
-/** Shade the middles of the squares of row y that are smooth. */
-static void shade_smooth(const strip *s, size_t row, int32_t y)
-{
-    const swarf_canvas *c = s->canvas;
-    const int32_t *number = s->number + row * (size_t)c->width;
-    swarf_spot spots[SWARF_PACKET];
-    int32_t place[SWARF_PACKET];
-    float colour[SWARF_PACKET][4];
-    int count = 0;
-    for (int32_t x = 0; x < c->width; x++) {
-        if (number[x] < 0) {
-            spots[count] = spot_of(c, x, y, 0.5, &c->middle[swarf_canvas_at(c, x, y)]);
-            place[count++] = x;
-        }
-        if (count < SWARF_PACKET && x + 1 < c->width) continue;
-        swarf_shade(&c->shading, spots, count, colour);
-        for (int i = 0; i < count; i++) memcpy(c->colour[swarf_canvas_at(c, place[i], y)], colour[i], sizeof colour[i]);
-        count = 0;
-    }
-}
-
-/** Edges of a row of squares that have one ray each. Creases on one side only: a line is one square wide. */
-static void draw_row_edges(const swarf_canvas *c, int32_t y)
-{
-    for (int32_t x = 0; x < c->width; x++) {
-        const swarf_sight *own = &c->middle[swarf_canvas_at(c, x, y)];
-        float edge = x + 1 < c->width ? edge_between(&c->look, own, own + 1, 1) : 0;
-        if (y + 1 < c->height) edge = fmaxf(edge, edge_between(&c->look, own, own + c->width, 1));
-        if (x > 0) edge = fmaxf(edge, edge_between(&c->look, own, own - 1, 0));
-        if (y > 0) edge = fmaxf(edge, edge_between(&c->look, own, own - c->width, 0));
-        if (edge > 0) draw_edge(c->colour[swarf_canvas_at(c, x, y)], edge);
-    }
-}
-
-/** Shade the middles of a row, and count the rough squares in it. */
+/** Shade the middles of a row. */
 static swarf_status shade_row(void *context, size_t row)
 {
-    const strip *s = context;
-    const swarf_canvas *c = s->canvas;
-    const int32_t y = s->top + (int32_t)row, one_ray = c->options->samples == 1;
-    size_t rough = 0;
-    for (int32_t x = 0; x < c->width; x++)
-        s->number[row * (size_t)c->width + (size_t)x] = !one_ray && is_rough(c, x, y) ? (int32_t)rough++ : -1;
-    if (y >= s->own && y < s->end) {
-        shade_smooth(s, row, y);
-        if (one_ray && c->options->edges) draw_row_edges(c, y);
+    const swarf_canvas *c = context;
+    const int32_t y = (int32_t)row;
+    float(*colour)[4] = c->colour + swarf_canvas_at(c, 0, y);
+    for (int32_t x = 0; x < c->width; x += SWARF_PACKET) {
+        swarf_spot spots[SWARF_PACKET];
+        int count = 0;
+        for (; count < SWARF_PACKET && x + count < c->width; count++)
+            spots[count] = spot_of(c, x + count, y, 0.5, &c->middle[swarf_canvas_at(c, x + count, y)]);
+        swarf_shade(&c->shading, spots, count, colour + x);
     }
+    return SWARF_OK;
+}
+
+/** How dark the line in a square is, of an edge and an outline there. */
+static float line_of(const swarf_canvas *c, size_t square, float edge, float outline)
+{
+    return fmaxf(edge * (float)c->room[square] / 255, outline);
+}
+
+/** Edges of a row of squares that have one ray each. */
+static swarf_status draw_row_edges(void *context, size_t row)
+{
+    const swarf_canvas *c = context;
+    for (size_t at = row * (size_t)c->width; at < (row + 1) * (size_t)c->width; at++)
+        if (c->edge[at])
+            swarf_edge_draw(c->colour[at], line_of(c, at, (float)c->edge[at] / 255, (float)c->outline[at] / 255));
+    return SWARF_OK;
+}
+
+struct judging {
+    const swarf_canvas *canvas;
+    uint8_t *is_rough;
+};
+
+static swarf_status judge_row(void *context, size_t row)
+{
+    const struct judging *judging = context;
+    const int32_t y = (int32_t)row;
+    for (int32_t x = 0; x < judging->canvas->width; x++)
+        judging->is_rough[swarf_canvas_at(judging->canvas, x, y)] = (uint8_t)is_rough(judging->canvas, x, y);
+    return SWARF_OK;
+}
+
+/** Count the rough squares of a row. */
+static swarf_status count_row(void *context, size_t row)
+{
+    const strip *s = context;
+    const size_t width = (size_t)s->canvas->width;
+    const uint8_t *own = s->is_rough + ((size_t)s->top + row) * width;
+    size_t rough = 0;
+    for (size_t x = 0; x < width; x++) s->number[row * width + x] = own[x] ? (int32_t)rough++ : -1;
     s->count[row + 1] = rough;
     return SWARF_OK;
 }
@@ -234,16 +221,23 @@ static const swarf_sight *sight_at(const strip *s, int32_t i, int32_t j)
     return &s->sample[(size_t)number * (size_t)(n * n) + (size_t)(j % n * n + i % n)];
 }
 
-static float edge_at(const strip *s, const swarf_sight *own, int32_t i, int32_t j)
+/** How dark the line is at a sample of square `square`. */
+static float line_at(const strip *s, size_t square, const swarf_sight *own, int32_t i, int32_t j)
 {
-    static const int8_t steps[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
+    static const int32_t steps[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
     const int32_t reach = (s->canvas->options->samples + 1) / 2; /* half a square, rounded up */
-    float edge = 0;
-    for (int step = 0; step < (reach > 1 ? 8 : 4) && edge < 1; step++) {
-        const swarf_sight *other = sight_at(s, i + reach * steps[step][0], j + reach * steps[step][1]);
-        if (other) edge = fmaxf(edge, edge_between(&s->canvas->look, own, other, 1));
+    float edge = 0, height = 0;
+    for (int step = 0; step < (reach > 1 ? 8 : 4) && height < INFINITY; step++) {
+        const int32_t di = reach * steps[step][0], dj = reach * steps[step][1];
+        const swarf_sight *other = sight_at(s, i + di, j + dj);
+        if (!other) continue;
+        height = fmaxf(height, swarf_edge_height(&s->canvas->look, own, other));
+        const float crease = swarf_edge_crease(own, other);
+        if (crease > edge)
+            edge = fmaxf(edge,
+                         swarf_edge_beyond(crease, sight_at(s, i - di, j - dj), sight_at(s, i + 2 * di, j + 2 * dj)));
     }
-    return edge;
+    return line_of(s->canvas, square, fmaxf(edge, swarf_edge_step(height)), swarf_edge_outline(height));
 }
 
 static swarf_status resolve_some(void *context, size_t index)
@@ -267,8 +261,8 @@ static swarf_status resolve_some(void *context, size_t index)
         memset(sum, 0, sizeof *c->colour);
         for (int32_t sub = 0; sub < n * n; sub++) {
             const int32_t i = n * x + sub % n, j = n * (y - s->top) + sub / n;
-            const float edge = c->options->edges ? edge_at(s, &sample[sub], i, j) : 0;
-            if (edge > 0) draw_edge(one[sub], edge);
+            const float line = c->edge ? line_at(s, s->rough[number], &sample[sub], i, j) : 0;
+            if (line > 0) swarf_edge_draw(one[sub], line);
             for (int channel = 0; channel < 4; channel++) sum[channel] += one[sub][channel] / (float)(n * n);
         }
     }
@@ -279,7 +273,7 @@ static swarf_status shade_strip(strip *s)
 {
     const size_t rows = (size_t)s->rows, side = (size_t)s->canvas->options->samples, samples = side * side;
     s->count[0] = 0;
-    SWARF_TRY(swarf_parallel_for(rows, shade_row, s, NULL, 0, 1));
+    SWARF_TRY(swarf_parallel_for(rows, count_row, s, NULL, 0, 1));
     for (size_t row = 0; row < rows; row++) s->count[row + 1] += s->count[row];
     s->rough_count = s->count[rows];
     if (s->rough_count == 0) return SWARF_OK;
@@ -295,9 +289,10 @@ static swarf_status shade_strip(strip *s)
     return swarf_parallel_for(pieces, resolve_some, s, NULL, 0, 1);
 }
 
-swarf_status swarf_canvas_shade(swarf_canvas *c, const swarf_progress *progress, double from, double to)
+static swarf_status sample_strips(swarf_canvas *c, const uint8_t *is_rough, const swarf_progress *progress, double from,
+                                  double to)
 {
-    strip s = {.canvas = c};
+    strip s = {.canvas = c, .is_rough = is_rough};
     s.number = malloc((size_t)(STRIP + 2) * (size_t)c->width * sizeof *s.number);
     s.count = malloc((STRIP + 3) * sizeof *s.count);
     swarf_status status = s.number && s.count ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
@@ -315,5 +310,22 @@ swarf_status swarf_canvas_shade(swarf_canvas *c, const swarf_progress *progress,
     }
     free(s.number);
     free(s.count);
+    return status;
+}
+
+swarf_status swarf_canvas_shade(swarf_canvas *c, const swarf_progress *progress, double from, double to)
+{
+    const size_t rows = (size_t)c->height;
+    SWARF_TRY(swarf_parallel_for(rows, shade_row, c, NULL, 0, 1));
+    if (c->options->edges) SWARF_TRY(swarf_canvas_edges(c));
+    if (c->options->samples == 1) {
+        if (c->edge) SWARF_TRY(swarf_parallel_for(rows, draw_row_edges, c, NULL, 0, 1));
+        return swarf_progress_report(progress, to);
+    }
+    struct judging judging = {c, malloc(rows * (size_t)c->width)};
+    if (!judging.is_rough) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
+    swarf_status status = swarf_parallel_for(rows, judge_row, &judging, NULL, 0, 1);
+    if (status == SWARF_OK) status = sample_strips(c, judging.is_rough, progress, from, to);
+    free(judging.is_rough);
     return status;
 }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Many points onto the surface: sorted into cells, so that what a cell needs is gathered once for all of its points. */
+/* Many points onto the surface: sorted into cells, so that what a cell needs is gathered once for all of its points.
+ * A place is the number of its cell, 21 bits per axis; they are sorted digit by digit of those bits in which they
+ * differ. */
 #include "base/parallel.h"
 #include "base/status.h"
 #include "surface/surface.h"
@@ -14,9 +16,11 @@ static const double cell_voxels = 6;
 static const double on_surface = 1e-9;
 
 struct place {
-    int32_t cell[3];
+    uint64_t cell;
     uint32_t point;
 };
+
+enum { AXIS_BITS = 21, DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
 
 struct refining {
     const swarf_surface *surface;
@@ -115,28 +119,48 @@ static swarf_status refine_cell(void *context, size_t run)
     return status;
 }
 
-static int by_cell(const void *a, const void *b)
+/* Cells beyond what 21 bits can tell are taken as one: it is only that more is gathered there. */
+static uint64_t cell_of(const double point[3], double edge)
 {
-    const struct place *x = a, *y = b;
-    for (int k = 0; k < 3; k++)
-        if (x->cell[k] != y->cell[k]) return x->cell[k] < y->cell[k] ? -1 : 1;
-    return x->point < y->point ? -1 : 1;
+    const double most = 1 << (AXIS_BITS - 1);
+    uint64_t cell = 0;
+    for (int k = 0; k < 3; k++) {
+        const double along = fmax(-most, fmin(most - 1, floor(point[k] / edge))) + most;
+        cell = cell << AXIS_BITS | (uint64_t)along;
+    }
+    return cell;
 }
 
-static swarf_status refine_sorted(struct refining *work, struct place *places, size_t *runs, size_t count,
-                                  const swarf_progress *progress)
+/* Sort by cells, stable; `spare` has room for as many. Where they are then: one of both. */
+static struct place *sort_places(struct place *places, struct place *spare, size_t count)
 {
+    uint64_t some = 0, all = UINT64_MAX;
     for (size_t i = 0; i < count; i++) {
-        for (int k = 0; k < 3; k++) {
-            const double cell = floor(work->points[3 * i + (size_t)k] / work->edge);
-            places[i].cell[k] = (int32_t)fmax(-2e9, fmin(2e9, cell));
-        }
-        places[i].point = (uint32_t)i;
+        some |= places[i].cell;
+        all &= places[i].cell;
     }
-    qsort(places, count, sizeof *places, by_cell);
+    for (int shift = 0; shift < 3 * AXIS_BITS; shift += DIGIT_BITS) {
+        size_t start[DIGITS + 1] = {0};
+        if (((some ^ all) >> shift & (DIGITS - 1)) == 0) continue;
+        for (size_t i = 0; i < count; i++) start[(places[i].cell >> shift & (DIGITS - 1)) + 1]++;
+        for (int digit = 0; digit < DIGITS; digit++) start[digit + 1] += start[digit];
+        for (size_t i = 0; i < count; i++) spare[start[places[i].cell >> shift & (DIGITS - 1)]++] = places[i];
+        struct place *const sorted = spare;
+        spare = places;
+        places = sorted;
+    }
+    return places;
+}
+
+static swarf_status refine_sorted(struct refining *work, struct place *places, struct place *spare, size_t *runs,
+                                  size_t count, const swarf_progress *progress)
+{
+    for (size_t i = 0; i < count; i++)
+        places[i] = (struct place){.cell = cell_of(work->points + 3 * i, work->edge), .point = (uint32_t)i};
+    places = sort_places(places, spare, count);
     size_t cells = 0;
     for (size_t i = 0; i < count; i++)
-        if (i == 0 || memcmp(places[i].cell, places[i - 1].cell, sizeof places[i].cell) != 0) runs[cells++] = i;
+        if (i == 0 || places[i].cell != places[i - 1].cell) runs[cells++] = i;
     runs[cells] = count;
     work->places = places;
     work->runs = runs;
@@ -164,9 +188,9 @@ static swarf_status refine(struct refining *work, size_t count, const swarf_prog
         SWARF_REQUIRE(d[0] != 0 || d[1] != 0 || d[2] != 0, "surface: direction %zu has no length", i);
     }
     work->edge = cell_voxels * work->surface->voxel;
-    struct place *places = malloc((count + 1) * sizeof *places);
+    struct place *places = malloc(2 * (count + 1) * sizeof *places);
     size_t *runs = malloc((count + 1) * sizeof *runs);
-    const swarf_status status = places && runs ? refine_sorted(work, places, runs, count, progress)
+    const swarf_status status = places && runs ? refine_sorted(work, places, places + count, runs, count, progress)
                                                : swarf_fail(SWARF_ERROR_MEMORY, "surface: out of memory");
     free(places);
     free(runs);
