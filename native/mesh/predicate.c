@@ -85,6 +85,20 @@ static int segment_meets(const int32_t p[3], const int32_t q[3], const int32_t t
     return (e0 >= 0 && e1 >= 0 && e2 >= 0) || (e0 <= 0 && e1 <= 0 && e2 <= 0);
 }
 
+/* Whether corners of triangle b, but for one that both have in common (-1: none), lie all on one side of the plane of
+ * triangle a. */
+static int on_one_side(const int32_t a[3][3], const int32_t b[3][3], int common)
+{
+    int side_of_b = 0;
+    for (int k = 0; k < 3; k++) {
+        if (k == common) continue;
+        const int own = orient(a[0], a[1], a[2], b[k]);
+        if (own == 0 || own == -side_of_b) return 0;
+        side_of_b = own;
+    }
+    return 1;
+}
+
 int swarf_triangles_meet(const int32_t pa[3][3], const uint32_t a[3], const int32_t pb[3][3], const uint32_t b[3])
 {
     int in_a[3], in_b[3], shared = 0; /* corners they have in common */
@@ -94,6 +108,9 @@ int swarf_triangles_meet(const int32_t pa[3][3], const uint32_t a[3], const int3
                 in_a[shared] = i;
                 in_b[shared++] = j;
             }
+    /* most of what is asked for: neighbours, and others that lie near each other */
+    if (shared < 2 && (on_one_side(pa, pb, shared ? in_b[0] : -1) || on_one_side(pb, pa, shared ? in_a[0] : -1)))
+        return 0;
     const int axis_a = flat_axis(pa), axis_b = flat_axis(pb);
     if (axis_a < 0 || axis_b < 0) return 0;
     if (shared == 3) return 1;

@@ -24,7 +24,7 @@ typedef struct simplify_region {
     double *xyz;      /* of the region's vertices */
     uint32_t *global; /* their numbers in the whole mesh */
     uint32_t *head;   /* first corner of each vertex's list */
-    uint8_t *state;   /* SIMPLIFY_FIXED, SIMPLIFY_DIRTY */
+    uint8_t *state;   /* SIMPLIFY_FIXED, SIMPLIFY_DIRTY, SIMPLIFY_BENT */
     uint32_t *mark;   /* stamps of the ring being looked at */
     float *need;      /* error below which a vertex that was looked at cannot go while its ring stays */
     size_t vertex_count;
@@ -34,7 +34,9 @@ typedef struct simplify_region {
     uint32_t stamp;
 } simplify_region;
 
-enum { SIMPLIFY_FIXED = 1, SIMPLIFY_DIRTY = 2 };
+/** May not go; to be looked at; the true normals of its facets differ, so that it need not be looked at with the flat
+ *  ones. */
+enum { SIMPLIFY_FIXED = 1, SIMPLIFY_DIRTY = 2, SIMPLIFY_BENT = 4 };
 
 /** Remove vertices while the error stays below `limit` (mm), then put the facets it has wholly back to the mesh, those
  *  gone with v[0] = SWARF_NO_VERTEX.

@@ -15,6 +15,7 @@
 #include "mesh/simplify.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Facets round a vertex that is looked at; hubs with more stay. */
@@ -104,11 +105,11 @@ static double where_they_pass(const ring *around, int i, int j, int k)
     return away;
 }
 
-static double normals_dot(const simplify_facet *a, const simplify_facet *b)
+static int is_crease(const simplify_facet *a, const simplify_facet *b)
 {
-    double sum = 0;
-    for (int k = 0; k < 3; k++) sum += (double)a->normal[k] * b->normal[k];
-    return sum / (32767.0 * 32767.0);
+    int32_t sum = 0; /* of three products below 2^30, of which the squares sum up to one */
+    for (int k = 0; k < 3; k++) sum += a->normal[k] * b->normal[k];
+    return (double)sum < edge_cosine * 32767 * 32767;
 }
 
 /* Squared shape of a triangle (4 sqrt(3) area / sum of squared sides) from the square of its normal and that sum. */
@@ -170,7 +171,7 @@ static int look_round(simplify_region *r, uint32_t v, ring *out)
     }
     for (int i = 0; i < count; i++) {
         const int before = i ? i - 1 : count - 1;
-        out->crease[i] = normals_dot(&r->facet[out->facet[before]], &r->facet[out->facet[i]]) < edge_cosine;
+        out->crease[i] = (uint8_t)is_crease(&r->facet[out->facet[before]], &r->facet[out->facet[i]]);
     }
     return 1;
 }
@@ -433,10 +434,23 @@ static size_t stride_of(size_t count)
     }
 }
 
+static void find_bent(simplify_region *r)
+{
+    for (size_t f = 0; f < r->facet_count; f++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t v = r->facet[f].v[k];
+            if (v == SWARF_NO_VERTEX) continue;
+            const int16_t *own = r->facet[f].normal, *other = r->facet[r->head[v] >> 2].normal;
+            for (int c = 0; c < 3; c++)
+                if (abs(own[c] - other[c]) > (int)flat_normal) r->state[v] |= SIMPLIFY_BENT;
+        }
+}
+
 size_t swarf_simplify_region(simplify_region *r, double limit, int first, swarf_facet *mesh)
 {
     const size_t far_apart = stride_of(r->vertex_count);
     static const double steps[] = {0.1, 0.2, 0.45, 0.7, 1}; /* the first only where it is flat */
+    if (first) find_bent(r);
     for (size_t step = first ? 0 : 4; step < sizeof steps / sizeof *steps; step++) {
         const double at = limit * steps[step];
         const size_t stride = step == 0 ? far_apart : 1;
@@ -449,6 +463,7 @@ size_t swarf_simplify_region(simplify_region *r, double limit, int first, swarf_
                 removed |= remove_vertex(r, (uint32_t)v, at, step == 0);
             }
         }
+        for (size_t v = 0; step == 0 && v < r->vertex_count; v++) r->state[v] &= (uint8_t)~SIMPLIFY_BENT;
     }
     size_t gone = 0;
     for (size_t f = 0; f < r->owned_count; f++) { /* the others are read by other threads */
