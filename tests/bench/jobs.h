@@ -93,4 +93,27 @@ static inline swarf_path *bench_job_paths(const bench_job *job, size_t *count)
     return paths;
 }
 
+/** The stock after the job, and its exact surface; both owned by the caller. */
+static inline swarf_stock *bench_job_cut(const bench_job *j, double voxel, swarf_surface **surface)
+{
+    swarf_program *program = bench_job_program(j);
+    const size_t moves = swarf_program_move_count(program), sections = swarf_program_section_count(program);
+    swarf_tool *tools = calloc(sections + 1, sizeof *tools);
+    swarf_cutter *cutter = NULL;
+    swarf_simulation *simulation = NULL;
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = voxel;
+    swarf_stock *stock = NULL;
+    bench_must(swarf_cutter_parse(j->cutter, &cutter));
+    for (size_t i = 0; i < sections; i++) tools[i] = (swarf_tool){swarf_program_sections(program)[i].tool, 0, cutter};
+    bench_must(swarf_stock_create_box(&j->box, &options, &stock));
+    bench_must(swarf_surface_create(stock, program, tools, sections, NULL, surface));
+    bench_must(swarf_stock_simulate(stock, program, 0, moves, tools, sections, NULL, NULL, &simulation));
+    swarf_simulation_destroy(simulation);
+    swarf_cutter_release(cutter);
+    swarf_program_release(program);
+    free(tools);
+    return stock;
+}
+
 #endif

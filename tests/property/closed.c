@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* test_property_closed [FILE...]: what CGAL says of our meshes: closed oriented 2-manifolds that do not cut themselves
+ * and enclose the volume that we say. Of the two programs of the shared data and of random ones, by the field and on
+ * the exact surface, with every vertex and after simplifying; or of the files named. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../bench/jobs.h"
+#include "random_stock.h"
+#include "shapes.h"
+#include "verdict.h"
+
+static int is_good(const verdict *v)
+{
+    return v->manifold && v->closed && v->outward && v->cuts == 0 && v->flat_triangles == 0 && v->bounds_a_volume;
+}
+
+static void print(const char *what, size_t triangles, const verdict *v)
+{
+    printf("%s: %zu triangles, manifold %d, closed %d, outward %d, %zu cut each other, %zu without area, bounds a "
+           "volume %d of %.6f mm3",
+           what, triangles, v->manifold, v->closed, v->outward, v->cuts, v->flat_triangles, v->bounds_a_volume,
+           v->volume_mm3);
+}
+
+/* `field_mm3`: that of the stock, 0: not known. It counts what is thinner than a voxel, of which the mesh shows only
+ * what voxel centres see: the two differ by up to a quarter of a voxel all over. */
+static void check_mesh(const char *what, const swarf_mesh *mesh, double field_mm3, double voxel)
+{
+    const swarf_triangles t = swarf_mesh_triangles(mesh);
+    const double ours = swarf_mesh_topology(mesh).volume_mm3;
+    verdict v;
+    if (t.triangle_count == 0 || !CHECK(verdict_of(&t, &v))) return;
+    CHECK(is_good(&v));
+    CHECK_NEAR(v.volume_mm3, ours, 1e-9 * fabs(ours));
+    print(what, t.triangle_count, &v);
+    if (field_mm3 > 0) {
+        CHECK_NEAR(v.volume_mm3, field_mm3, 0.25 * voxel * swarf_mesh_topology(mesh).area_mm2);
+        printf(", %+.2e of the field's", v.volume_mm3 / field_mm3 - 1);
+    }
+    printf("\n");
+    fflush(stdout);
+}
+
+enum { KINDS = 4 };
+
+/* Error (in voxels) and surface of each kind. */
+static const struct kind {
+    double error;
+    int exact;
+    const char *name;
+} kinds[KINDS] = {{0, 0, "field, whole"},
+                  {0.1, 0, "field, error 0.1 voxel"},
+                  {0, 1, "exact, whole"},
+                  {0.1, 1, "exact, error 0.1 voxel"}};
+
+static void check_stock(const char *name, swarf_stock *stock, const swarf_surface *surface, double voxel)
+{
+    double volume = 0;
+    CHECK_OK(swarf_stock_volume(stock, &volume));
+    for (int k = 0; k < KINDS; k++) {
+        swarf_contour_options options = swarf_contour_options_default();
+        options.error_mm = kinds[k].error * voxel;
+        options.surface = kinds[k].exact ? surface : NULL;
+        swarf_mesh *mesh = NULL;
+        char what[128];
+        snprintf(what, sizeof what, "%s, %s", name, kinds[k].name);
+        if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL))) continue;
+        check_mesh(what, mesh, volume, voxel);
+        swarf_mesh_release(mesh);
+    }
+}
+
+static void check_job(const bench_job *job, int resolution)
+{
+    const double voxel = bench_job_voxel(job, resolution);
+    char name[64];
+    swarf_surface *surface = NULL;
+    swarf_stock *stock = bench_job_cut(job, voxel, &surface);
+    snprintf(name, sizeof name, "%s at N = %d", job->name, resolution);
+    check_stock(name, stock, surface, voxel);
+    swarf_surface_release(surface);
+    swarf_stock_destroy(stock);
+}
+
+static void check_random(int count)
+{
+    test_random random = test_random_begin(100);
+    for (int i = 0; i < count; i++) {
+        const double voxel = test_random_in(&random, 0.05, 0.2);
+        swarf_surface *surface = NULL;
+        swarf_stock *stock = random_stock(&random, voxel, &surface);
+        char name[64];
+        if (!stock) continue;
+        snprintf(name, sizeof name, "random program %d, voxel %.3f", i, voxel);
+        check_stock(name, stock, surface, voxel);
+        swarf_surface_release(surface);
+        swarf_stock_destroy(stock);
+    }
+}
+
+/* What is wrong is found: open, turned over, cutting itself. */
+static void check_verdict(void)
+{
+    const double lo[3] = {0, 0, 0}, hi[3] = {2, 2, 2}, lo_other[3] = {1, 1, 1}, hi_other[3] = {3, 3, 3};
+    verdict v;
+    shape s = {0};
+    shape_box(&s, lo, hi);
+    swarf_triangles view = shape_view(&s);
+    CHECK(verdict_of(&view, &v) && is_good(&v) && fabs(v.volume_mm3 - 8) < 1e-9);
+    view.triangle_count--;
+    CHECK(verdict_of(&view, &v) && v.manifold && !v.closed && !is_good(&v));
+    const uint32_t kept = s.index[0];
+    s.index[0] = s.index[1];
+    s.index[1] = kept;
+    view = shape_view(&s);
+    CHECK(verdict_of(&view, &v) && !v.manifold && !is_good(&v));
+    s.index[1] = s.index[0];
+    s.index[0] = kept;
+    shape_box(&s, lo_other, hi_other);
+    view = shape_view(&s);
+    CHECK(verdict_of(&view, &v) && v.closed && v.cuts > 0 && !is_good(&v));
+    shape_free(&s);
+    shape_box(&s, lo, hi);
+    shape_flip(&s, 0);
+    view = shape_view(&s);
+    CHECK(verdict_of(&view, &v) && v.closed && !v.outward && !is_good(&v));
+    shape_free(&s);
+}
+
+int main(int count, char **argument)
+{
+    check_verdict();
+    for (int i = 1; i < count; i++) {
+        swarf_mesh *mesh = NULL;
+        if (!CHECK_OK(swarf_mesh_read(argument[i], &mesh))) continue;
+        check_mesh(argument[i], mesh, 0, 0);
+        swarf_mesh_release(mesh);
+    }
+    if (count > 1) return test_end();
+    const int full = test_size() == TEST_FULL;
+    check_random(full ? 100 : 3);
+    if (!test_shared()[0]) {
+        printf("bear and cameo left out: no folder of shared data (SWARF_SHARED)\n");
+        return test_end();
+    }
+    for (int resolution = full ? 256 : 128; resolution <= (full ? 2048 : 128); resolution *= 2) {
+        check_job(bench_job_find("bear"), resolution);
+        check_job(bench_job_find("cameo"), resolution);
+    }
+    return test_end();
+}

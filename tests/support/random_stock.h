@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Stocks that random programs have cut. */
+#ifndef SWARF_TEST_RANDOM_STOCK_H
+#define SWARF_TEST_RANDOM_STOCK_H
+
+#include "test.h"
+
+/** A block of 6 x 6 x 5 mm after some straight moves of four small cutters, and its exact surface; both owned by the
+ *  caller. NULL when it could not be made. */
+swarf_stock *random_stock(test_random *random, double voxel, swarf_surface **surface);
+
+#endif
