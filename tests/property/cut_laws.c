@@ -6,6 +6,7 @@
  * a voxel whose value is beyond sqrt(3) voxels on the outside holds no information (its leaf may have been dropped at
  * different times), so such values may differ; all others may not. (With thousands of moves they can, too, beside
  * edges outside of the material, where a track that another one dominates may tell a shorter distance; never a sign.)
+ * Deep inside, within the error bound of the rim of the band, a searched distance may count as beyond the band or not.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +14,7 @@
 
 #include "cases.h"
 
-enum { MOVES = 14, SAMPLES = 100000 };
+enum { MOVES = 14, SAMPLES = 100000, BAND = 3 /* voxels of it on either side of the surface */ };
 
 static const swarf_box block = {{-8.01, -6.02, -5}, {8.03, 6.04, 2.5}};
 
@@ -74,10 +75,12 @@ static float *values_of(swarf_stock *stock)
 /* Same field as far as different batches must agree: see the head of this file. */
 static int same_field(const float *a, const float *b)
 {
-    const double roof = sqrt(3) * voxel;
+    const double roof = sqrt(3) * voxel, rim = -(BAND - SWARF_SWEEP_BOUND) * voxel;
     int different = 0;
-    for (int i = 0; i < SAMPLES; i++)
-        different += fmin((double)a[i], (double)b[i]) < roof && fabs((double)a[i] - (double)b[i]) > 1e-5 * voxel;
+    for (int i = 0; i < SAMPLES; i++) {
+        const double low = fmin((double)a[i], (double)b[i]), high = fmax((double)a[i], (double)b[i]);
+        different += low < roof && high > rim && high - low > 1e-5 * voxel;
+    }
     if (different) printf("    %d of %d values differ\n", different, SAMPLES);
     return different == 0;
 }
@@ -208,7 +211,7 @@ static void check_cutter(int index, test_random *random)
     swarf_path paths[MOVES], shuffled[MOVES];
     swarf_cutter *cutter = case_cutter(index, &name);
     voxel = index % 3 == 0 ? 0.1 : test_random_in(random, 0.11, 0.3);
-    if (test_size() != TEST_FULL) voxel *= 2.2;
+    if (test_size() != TEST_FULL) voxel *= 3;
     draw_moves(random, paths, MOVES);
     draw_points(random);
 

@@ -69,7 +69,7 @@ static void check_cuts(void)
     size_t total = 0, count = 0, same = 0, quiet = 0;
     CHECK_OK(swarf_stock_changed(stock, 0, all, MOST, &total));
     CHECK(total > 8 && total % 64 == 0 && total <= MOST);
-    const int cuts = test_size() == TEST_LIGHT ? 4 : 12;
+    const int cuts = test_size() == TEST_FULL ? 12 : test_size() == TEST_USUAL ? 6 : 4;
     for (int cut = 0; cut < cuts; cut++) {
         double c[6];
         for (int i = 0; i < 6; i++) c[i] = test_random_in(&random, block.lo[i % 3] - 3, block.hi[i % 3] + 3);
