@@ -32,31 +32,40 @@ static uint32_t column_of(const swarf_place *place, const swarf_word *word)
     return word ? (uint32_t)(word->at - place->text) + 1 : 1;
 }
 
+enum { NOTE_SIZE = 480 };
+
+/* The word, if there is one, and what there is to say of it. */
+static void compose(const swarf_word *word, const char *format, va_list arguments, char out[NOTE_SIZE])
+{
+    char quoted[40] = "", text[400];
+    if (word) quote(word, quoted, sizeof quoted);
+    vsnprintf(text, sizeof text, format, arguments);
+    snprintf(out, NOTE_SIZE, "%s%s%s", quoted, word ? " " : "", text);
+}
+
 swarf_status swarf_gcode_fail(const swarf_machine *machine, const swarf_word *word, const char *format, ...)
 {
     const swarf_place *place = &machine->place;
-    char quoted[40] = "", text[400], all[480];
-    if (word) quote(word, quoted, sizeof quoted);
+    char note[NOTE_SIZE];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    compose(word, format, arguments, note);
     va_end(arguments);
-    snprintf(all, sizeof all, "%s%s%s", quoted, word ? " " : "", text);
-    SWARF_TRY(swarf_notes_add(machine->notes, SWARF_NOTE_ERROR, place->name, place->line, column_of(place, word), all));
-    return swarf_fail(SWARF_ERROR_FORMAT, "%s:%u:%u: error: %s", place->name, place->line, column_of(place, word), all);
+    SWARF_TRY(
+        swarf_notes_add(machine->notes, SWARF_NOTE_ERROR, place->name, place->line, column_of(place, word), note));
+    return swarf_fail(SWARF_ERROR_FORMAT, "%s:%u:%u: error: %s", place->name, place->line, column_of(place, word),
+                      note);
 }
 
 swarf_status swarf_gcode_warn(const swarf_machine *machine, const swarf_word *word, const char *format, ...)
 {
     const swarf_place *place = &machine->place;
-    char quoted[40] = "", text[400], all[480];
-    if (word) quote(word, quoted, sizeof quoted);
+    char note[NOTE_SIZE];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    compose(word, format, arguments, note);
     va_end(arguments);
-    snprintf(all, sizeof all, "%s%s%s", quoted, word ? " " : "", text);
-    return swarf_notes_add(machine->notes, SWARF_NOTE_WARNING, place->name, place->line, column_of(place, word), all);
+    return swarf_notes_add(machine->notes, SWARF_NOTE_WARNING, place->name, place->line, column_of(place, word), note);
 }
 
 static inline int blank(char c)
