@@ -414,9 +414,22 @@ static int view_values(PyObject *object, view *v)
     return 0;
 }
 
+static int view_selected(PyObject *pair, swarf_picture_options *options)
+{
+    Py_ssize_t first, end;
+    if (!PyTuple_Check(pair) || !PyArg_ParseTuple(pair, "nn", &first, &end) || first < 0 || end < first) {
+        PyErr_Clear();
+        PyErr_SetString(PyExc_ValueError, "selected: needs (first, end) with 0 <= first <= end");
+        return -1;
+    }
+    options->selected_first = (size_t)first;
+    options->selected_count = (size_t)(end - first);
+    return 0;
+}
+
 /* The objects among the keywords; NULL or None where not given. */
 typedef struct view_objects {
-    PyObject *camera, *colour, *background, *background_top, *values, *sections, *cutter, *program, *outline;
+    PyObject *camera, *colour, *background, *background_top, *values, *sections, *cutter, *program, *selected, *outline;
 } view_objects;
 
 static int given(PyObject *object)
@@ -436,6 +449,7 @@ static int view_read(module_state *state, const view_objects *o, const char *col
                  (given(o->sections) && view_sections(o->sections, v)) ||
                  (given(o->cutter) && view_cutter(state, o->cutter, v)) ||
                  (given(o->outline) && camera_box(o->outline, &v->outline)) ||
+                 (given(o->selected) && view_selected(o->selected, &v->options)) ||
                  (given(o->values) && view_values(o->values, v));
     if (!failed && given(o->outline)) v->options.outline = &v->outline;
     if (!failed && given(o->program)) {
@@ -453,10 +467,10 @@ static int view_read(module_state *state, const view_objects *o, const char *col
 
 static PyObject *scene_render(PyObject *self, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"camera",     "width",          "height",     "samples",   "coarse",        "budget_ms",
-                            "buffers",    "exact",          "edges",      "occlusion", "shadow",        "colour",
-                            "background", "background_top", "colouring",  "values",    "value_range",   "sections",
-                            "cutter",     "program",        "moves_done", "path",      "selected_line", "outline",
+    static char *names[] = {"camera",     "width",          "height",     "samples",   "coarse",      "budget_ms",
+                            "buffers",    "exact",          "edges",      "occlusion", "shadow",      "colour",
+                            "background", "background_top", "colouring",  "values",    "value_range", "sections",
+                            "cutter",     "program",        "moves_done", "path",      "selected",    "outline",
                             "axes",       "progress",       NULL};
     module_state *state = state_of(self);
     PyObject *buffers = NULL, *progress = NULL;
@@ -465,11 +479,11 @@ static PyObject *scene_render(PyObject *self, PyObject *args, PyObject *keywords
     view v = {.options = swarf_picture_options_default()};
     swarf_picture_options *o = &v.options;
     if (!PyArg_ParseTupleAndKeywords(
-            args, keywords, "O!|ii$iidOppppOOOsOdOOOdpIOdO:render", names, state->camera, &objects.camera, &o->width,
+            args, keywords, "O!|ii$iidOppppOOOsOdOOOdpOOdO:render", names, state->camera, &objects.camera, &o->width,
             &o->height, &o->samples, &o->coarse, &o->budget_ms, &buffers, &o->exact, &o->edges, &o->occlusion,
             &o->shadow, &objects.colour, &objects.background, &objects.background_top, &colouring, &objects.values,
             &o->value_range, &objects.sections, &objects.cutter, &objects.program, &o->moves_done, &o->path,
-            &o->selected_line, &objects.outline, &o->axes_mm, &progress) ||
+            &objects.selected, &objects.outline, &o->axes_mm, &progress) ||
         view_read(state, &objects, colouring, &v))
         return NULL;
     PyObject *names_of = given(buffers) ? Py_NewRef(buffers) : Py_BuildValue("(s)", "rgba");
@@ -550,7 +564,7 @@ static PyMethodDef scene_methods[] = {
      "render($self, camera, width=1280, height=960, *, samples=3, coarse=1, budget_ms=0.0, buffers=None, "
      "exact=True, edges=True, occlusion=True, shadow=False, colour=None, background=None, background_top=None, "
      "colouring='material', values=None, value_range=0.1, sections=None, cutter=None, program=None, moves_done=0.0, "
-     "path=False, selected_line=0, outline=None, axes=0.0, progress=None)\n--\n\n"
+     "path=False, selected=None, outline=None, axes=0.0, progress=None)\n--\n\n"
      "A Picture. At edges samples x samples rays per pixel (1 .. 4); one ray for coarse x coarse pixels (1 .. 16), as\n"
      "many as it takes to be done in about budget_ms when that is given. buffers: what is wanted of rgba (None),\n"
      "depth, normal, position, move and seen. exact: the surface of set_surface(), at rest; edges: dark lines; "
@@ -558,8 +572,9 @@ static PyMethodDef scene_methods[] = {
      "Colours are linear, 0 .. 1: RGB of the material, RGBA of the background. colouring: material, operation, tool,\n"
      "age or feed of the program's moves, or deviation from `values`, width * height float32 in mm, +-value_range.\n"
      "sections: up to 6 (point, normal); what lies where a normal points to is taken away. cutter: (Cutter, tip).\n"
-     "program, moves_done: what is played, and how far; path: show it. selected_line stands out. outline: a box;\n"
-     "axes: mm of x, y, z."},
+     "program, moves_done: what is played, and how far; path: show it. surfaces and path of the moves selected=(first, "
+     "end)\n"
+     "stand out. outline: a box; axes: mm of x, y, z."},
     {"pick", WITH_KEYWORDS(scene_pick), METH_VARARGS | METH_KEYWORDS,
      "pick($self, camera, x, y, width=1280, height=960, *, sections=None, cutter=None)\n--\n\n"
      "The Pick at a place of the picture (x to the right and y upwards, -1 .. 1), or None where nothing is."},

@@ -502,7 +502,7 @@ class Scene:
         program: Optional[Program] = None,
         moves_done: float = 0.0,
         path: bool = False,
-        selected_line: int = 0,
+        selected: Optional[tuple[int, int]] = None,
         outline: Optional[Box] = None,
         axes: float = 0.0,
         progress: Progress = None,
@@ -514,7 +514,7 @@ class Scene:
         deviation from ``values``, width * height float32 in mm, +-value_range. sections: up to 6 (point, normal); what
         lies where a normal points to is taken away. cutter: (Cutter, tip). program, moves_done: what is played, and how
         far; path: show it.
-        selected_line stands out. outline: a box; axes: mm of x, y, z."""
+        surfaces and path of the moves ``selected`` = (first, end) stand out. outline: a box; axes: mm of x, y, z."""
     def pick(
         self,
         camera: Camera,

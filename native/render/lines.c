@@ -146,7 +146,7 @@ static swarf_status add_moves(work *w)
         if (!path.has_motion) continue;
         const int rapid = swarf_move_get_kind(&moves[i]) != SWARF_MOVE_FEED;
         const double done = fmin(fmax(o->moves_done - (double)i, 0), 1);
-        if (o->selected_line && moves[i].line == o->selected_line) {
+        if (swarf_shade_is_selected(o, (int64_t)i)) {
             SWARF_TRY(add_path(w, &path, 0, 1, SELECTED));
             continue;
         }

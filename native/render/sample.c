@@ -73,7 +73,8 @@ static int is_rough(const swarf_canvas *c, int32_t x0, int32_t y0)
         for (int32_t x = x0 - 1; x <= x0 + 1; x++) {
             if (x < 0 || y < 0 || x >= c->width || y >= c->height) continue;
             const size_t other = swarf_canvas_at(c, x, y);
-            if (is_same_face(&c->middle[own], &c->middle[other])) continue;
+            if (c->middle[own].move == c->middle[other].move && is_same_face(&c->middle[own], &c->middle[other]))
+                continue;
             if (c->middle[own].seen != c->middle[other].seen || (c->edge && (c->edge[own] || c->edge[other])) ||
                 !is_same_colour(c->colour[own], c->colour[other]))
                 return 1;

@@ -147,7 +147,7 @@ static void surface_colour(const swarf_shading *s, const swarf_sight *sight, flo
         break;
     default: break;
     }
-    if (o->selected_line && move->line == o->selected_line) blend(out, selected_colour, 0.8f);
+    if (swarf_shade_is_selected(o, sight->move)) blend(out, selected_colour, 0.8f);
 }
 
 /** Slanting lines as wide as the gaps between them look best; these are half that, on the colour of a cut. */
@@ -224,7 +224,7 @@ void swarf_shade(const swarf_shading *shading, const swarf_spot spots[], int cou
 int swarf_shade_is_uniform(const swarf_shading *shading)
 {
     const swarf_look *look = shading->look;
-    return shading->options->colouring == SWARF_COLOURING_MATERIAL && !shading->options->selected_line &&
+    return shading->options->colouring == SWARF_COLOURING_MATERIAL && !shading->options->selected_count &&
            !look->cutter && look->section_count == 0 && !swarf_scene_fixtures(look->scene);
 }
 

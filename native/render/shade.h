@@ -24,6 +24,13 @@ typedef struct swarf_spot {
     float value;    /**< the deviation, NAN: none */
 } swarf_spot;
 
+/** Whether a move (-1: none) is one of those that stand out. */
+static inline int swarf_shade_is_selected(const swarf_picture_options *options, int64_t move)
+{
+    return move >= 0 && (size_t)move >= options->selected_first &&
+           (size_t)move - options->selected_first < options->selected_count;
+}
+
 /** Colours of `count` <= SWARF_PACKET spots, RGBA premultiplied. */
 void swarf_shade(const swarf_shading *shading, const swarf_spot spots[], int count, float (*out)[4]);
 

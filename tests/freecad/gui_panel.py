@@ -250,11 +250,13 @@ class Watching(PanelTest):
             assert abs(panel.picking.found.depth_below_top + point[2]) < 0.1
             assert [obj.Label for obj in Gui.Selection.getSelection()] == [operation]
         line = panel.picking.found.line
-        assert panel.program.currentIndex().row() == line
+        assert panel.program.currentIndex().row() == line and panel.player.selected == line
+        wait_for(lambda: self.is_marked((60, 10, -1)), "the line's faces to stand out")
+        assert not self.is_marked((25, 25, -5))
         screenshot("panel-point.png")
         panel.tabs.setCurrentWidget(panel.program)
         pump(0.2)
-        row = panel.session.listing.line_of(panel.session.listing.operation_begin[2] + 3)
+        row = panel.session.listing.line_of(panel.session.listing.operation_begin[2] + 4)
         index = panel.program.model().index(row, 0)
         panel.program.scrollTo(index)
         place = panel.program.visualRect(index).center()
@@ -262,6 +264,7 @@ class Watching(PanelTest):
         self.settle(float(panel.session.listing.moves_of(row)[1]))
         assert panel.program.currentIndex().row() == row, "the line that was clicked stays marked"
         assert panel.session.listing.text(row) in panel.view.caption[1]
+        assert panel.player.selected == row and self.is_marked((51.07, 12.93, -3)), "the line's faces stand out"
         screenshot("panel-line.png")
         panel.tabs.setCurrentWidget(panel.operations)
         pump(0.2)
@@ -273,6 +276,15 @@ class Watching(PanelTest):
         assert not document.getObject("Holes").ViewObject.Visibility
         item.setCheckState(0, QtCore.Qt.Checked)
         assert document.getObject("Holes").ViewObject.Visibility
+        assert panel.player.selected is None and not self.is_marked((51.07, 12.93, -3))
+
+    def is_marked(self, point):
+        """Whether the picture shows a point in the colour of what is selected."""
+        view = self.panel.view
+        image = view.image()
+        x, y, _ = view.camera.project(point, view.aspect())
+        colour = image.pixelColor(int((x + 1) / 2 * image.width()), int((1 - y) / 2 * image.height()))
+        return colour.red() > colour.blue() + 60
 
     def section(self):
         """Cut open by the button, the slider, the number, the other side; kept while it plays."""

@@ -155,6 +155,14 @@ def test_the_exact_surface_knows_its_moves():
     assert scene.pick(camera, edge[0], edge[1]).point[2] == pytest.approx(-4, abs=1e-6)
     picture = scene.render(camera, 60, 60, buffers=("rgba", "move"), colouring="operation", program=program)
     assert picture.move[30, 30] == 1 and picture.rgba[30 * 60 + 30, 0] != picture.rgba[5 * 60 + 30, 0]
+    plain, marked = (scene.render(camera, 60, 60, program=program, selected=selected).rgba
+                     for selected in (None, (1, 2)))
+    red, blue = marked[30 * 60 + 30, 0], marked[30 * 60 + 30, 2]
+    assert red > blue + 80 and plain[30 * 60 + 30, 0] < plain[30 * 60 + 30, 2] + 40  # the slot's floor stands out
+    assert bytes(marked)[4 * (5 * 60 + 30):][:3] == bytes(plain)[4 * (5 * 60 + 30):][:3]  # the top does not
+    for wrong in ((2, 1), (-1, 2), 3):
+        with pytest.raises(ValueError, match="selected"):
+            scene.render(camera, 60, 60, program=program, selected=wrong)
     scene.set_moves(None)
     with pytest.raises(BufferError):
         program.add_line((0, 0, 0))

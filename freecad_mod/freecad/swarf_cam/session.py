@@ -225,7 +225,8 @@ class Session:
             how = {"samples": 1}
             # coarse rays make steps of the edges' lines
             off = {"occlusion", "shadow"} | ({"edges"} if coarse > 1 else set())
-            if dict(view.look).get("colouring") == "material":  # the others are those of the moves: it alone knows them
+            seen = dict(view.look)
+            if seen.get("colouring") == "material" and not seen.get("selected"):  # else it alone knows the moves
                 off.add("exact")
             how.update((name, False) for name in off if name in self._keywords)
             if tinted:  # a value for each ray, not for each pixel

@@ -142,7 +142,8 @@ typedef struct swarf_picture_options {
     const swarf_program *program; /**< what colourings and the path are of; NULL: none */
     double moves_done;            /**< moves and part of a move that have been played */
     int32_t path;                 /**< 1: the tool's path: rapids and feeds, done and to come */
-    uint32_t selected_line;       /**< surfaces and path of this line stand out; 0: none */
+    size_t selected_first;        /**< surfaces and path of moves from this one on stand out, */
+    size_t selected_count;        /**< as many as this; 0: none */
     const swarf_box *outline;     /**< its edges as lines; NULL: none */
     double axes_mm;               /**< length of x, y and z at the origin; 0: none */
 } swarf_picture_options;

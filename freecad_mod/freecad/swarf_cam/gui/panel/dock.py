@@ -247,7 +247,13 @@ class LivePanel(QtWidgets.QDockWidget):
         return (("background", bottom), ("background_top", top), ("occlusion", settings.flag("Occlusion")),
                 ("shadow", settings.flag("Shadow")), ("edges", True),
                 ("colouring", "material" if self.tools.tolerance_mm else self.tools.colouring),
-                ("colour", colours.MATERIAL), ("sections", self.section.planes()))
+                ("colour", colours.MATERIAL), ("sections", self.section.planes()), ("selected", self._selected()))
+
+    def _selected(self):
+        """(first, end) of the moves whose faces stand out, None for none; deviations have colours of their own."""
+        if self.player.selected is None or self.tools.tolerance_mm:
+            return None
+        return self.session.listing.moves_of(self.player.selected)
 
     def current_view(self, size=None):
         """session.View of what is shown, or of another size (width, height) of the picture."""

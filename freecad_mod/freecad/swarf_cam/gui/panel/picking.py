@@ -40,6 +40,7 @@ class Picking:
             return
         self.found = found
         panel.view.set_mark(found.point if found else None)
+        panel.player.select(found.line if found and found.move >= 0 else None)
         if found is None:
             panel.inspector.show_values(None)
             return

@@ -11,11 +11,12 @@ TICK_MS = 30
 
 
 class Player:
-    """transport: the core Transport of the job that is open, None for none."""
+    """transport: the core Transport of the job that is open, None for none. selected: the line whose faces stand out in
+    the picture, None for none."""
 
     def __init__(self, panel):
         self._panel = panel
-        self.transport = self._line = None
+        self.transport = self._line = self.selected = None
         self._clock = QtCore.QElapsedTimer()
         self._timer = QtCore.QTimer(panel)
         self._timer.setInterval(TICK_MS)
@@ -31,8 +32,14 @@ class Player:
     def close_job(self):
         """Play nothing any more."""
         self._timer.stop()
-        self.transport = self._line = None
+        self.transport = self._line = self.selected = None
         self._panel.bar.set_playing(False)
+
+    def select(self, line):
+        """Have the faces that a line cut stand out, None: none."""
+        if line != self.selected:
+            self.selected = line
+            self._panel.wish()
 
     def _tick(self):
         elapsed = self._clock.restart() / 1000.0
@@ -50,6 +57,7 @@ class Player:
         else:
             self.transport.play()
             self._panel.view.set_mark(None)
+            self.select(None)
             self._clock.start()
             self._timer.start()
         self._panel.bar.set_playing(self.transport.playing)
@@ -71,6 +79,7 @@ class Player:
             self._line = line
         if self._line is not None and place != self._panel.session.listing.moves_of(self._line)[1]:
             self._line = None
+        self.select(line)
         self.transport.seek(place)
         self._timer.stop()
         self._panel.bar.set_playing(False)
@@ -105,7 +114,8 @@ class Player:
             self.seek(self._panel.session.listing.operation_begin[index])
 
     def go_to_line(self, line):
-        """Show what a line has cut: stand behind its last move, but keep it marked, not the next one."""
+        """Show what a line has cut: stand behind its last move, but keep it marked, not the next one; its faces stand
+        out."""
         if self.transport is not None:
             self.seek(self._panel.session.listing.moves_of(line)[1], line)
 
