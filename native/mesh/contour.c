@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/status.h"
+#include "base/weld.h"
 #include "mesh/intersect.h"
 
 #include <math.h>
@@ -24,13 +25,15 @@ swarf_contour_options swarf_contour_options_default(void)
 static swarf_status cross_one(void *context, size_t index)
 {
     contour *work = context;
-    return swarf_contour_cross(work, &work->blocks[index]);
+    contour_block *block = &work->blocks[index];
+    return block->finished ? SWARF_OK : swarf_contour_cross(work, block);
 }
 
 static swarf_status place_one(void *context, size_t index)
 {
     contour *work = context;
-    return swarf_contour_place(work, &work->blocks[index]);
+    contour_block *block = &work->blocks[index];
+    return swarf_contour_is_within(work, block, 2) ? swarf_contour_place(work, block) : SWARF_OK;
 }
 
 static swarf_status place_again(void *context, size_t index)
@@ -42,13 +45,15 @@ static swarf_status place_again(void *context, size_t index)
 static swarf_status tile_one(void *context, size_t index)
 {
     contour *work = context;
-    return swarf_contour_tile(work, &work->blocks[index]);
+    contour_block *block = &work->blocks[index];
+    return swarf_contour_is_within(work, block, 1) ? swarf_contour_tile(work, block) : SWARF_OK;
 }
 
 static swarf_status join_one(void *context, size_t index)
 {
     contour *work = context;
-    return swarf_contour_join(work, &work->blocks[index]);
+    contour_block *block = &work->blocks[index];
+    return swarf_contour_is_within(work, block, 1) ? swarf_contour_join(work, block) : SWARF_OK;
 }
 
 static swarf_status number_vertices(contour *work)
@@ -78,12 +83,13 @@ static swarf_status gather_one(void *context, size_t index)
     if (block->left)
         for (uint32_t i = 0; i < block->left_count; i++)
             memcpy(xyz + 3 * (size_t)i, block->vertices[block->left[i]].xyz, 12);
-    else if (block->vertex_count)
-        memcpy(xyz, block->vertices, block->vertex_count * 12);
+    else if (block->left_count) /* none beyond the band */
+        memcpy(xyz, block->vertices, block->left_count * 12);
     if (block->centre_count)
         memcpy(g->out->xyz + 3 * (g->vertices + block->centre_first), block->centres, block->centre_count * 12);
     for (size_t f = 0; f < block->facet_count; f++) {
         swarf_facet facet = block->facets[f];
+        facet.beyond = !swarf_contour_is_within(g->work, block, 0);
         for (int k = 0; k < 3; k++)
             if (facet.v[k] & SWARF_CENTRE)
                 facet.v[k] = (uint32_t)(g->vertices + block->centre_first + (facet.v[k] & ~SWARF_CENTRE));
@@ -154,6 +160,15 @@ static void note_cells(contour *work, const swarf_facets *facets, const swarf_fa
             }
 }
 
+/* Whether facets end at the vertices of these cells: those beside the planes between bands, and the last ones joined.
+ */
+static int is_border(const contour *work, const contour_block *block, int x)
+{
+    const int32_t end = block->ijk[0] + SWARF_LEAF_DIM;
+    return work->band && x == SWARF_LEAF_DIM - 1 &&
+           (block->finished || end == work->band->end || end == work->band->end + SWARF_LEAF_DIM);
+}
+
 /* Vertices of noted cells, which are not to be left out; centres are where something was amiss already. */
 static uint8_t *kept_vertices(const contour *work, const swarf_facets *facets)
 {
@@ -164,9 +179,10 @@ static uint8_t *kept_vertices(const contour *work, const swarf_facets *facets)
         const contour_block *block = &work->blocks[i];
         cells += block->left_count;
         uint32_t next = 0;
+        if (block->left_count == 0) continue; /* beyond the band */
         for (int x = 0; x < 8; x++)
             for (uint64_t word = block->cell_mask[x]; word; word &= word - 1, next++) {
-                if (!(block->keep_mask[x] >> __builtin_ctzll(word) & 1)) continue;
+                if (!is_border(work, block, x) && !(block->keep_mask[x] >> __builtin_ctzll(word) & 1)) continue;
                 const contour_cell *cell = &block->cells[next];
                 for (uint32_t v = cell->first; v < cell->first + work->table.entry[cell->config][cell->flip].count; v++)
                     kept[block->vertex_first + (block->tile ? block->tile[v] & ~SWARF_TILED : v)] = 1;
@@ -176,41 +192,103 @@ static uint8_t *kept_vertices(const contour *work, const swarf_facets *facets)
     return kept;
 }
 
+/* Put the finished facets of other bands behind those of this one, where they share vertices by their places. */
+static swarf_status append_below(const swarf_facets *below, swarf_facets *facets)
+{
+    const size_t own = facets->vertex_count, all = own + below->vertex_count, count = facets->facet_count;
+    float *xyz = malloc((3 * all + 1) * sizeof *xyz), *welded = malloc((3 * all + 1) * sizeof *welded);
+    swarf_facet *facet = malloc((count + below->facet_count + 1) * sizeof *facet);
+    uint32_t *map = malloc((all + 1) * sizeof *map), *first = malloc((all + 1) * sizeof *first);
+    swarf_status status = SWARF_OK;
+    if (!xyz || !welded || !facet || !map || !first) {
+        status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for %zu triangles", count);
+    } else {
+        memcpy(xyz, facets->xyz, 3 * own * sizeof *xyz);
+        memcpy(xyz + 3 * own, below->xyz, 3 * below->vertex_count * sizeof *xyz);
+        memcpy(welded, xyz, 3 * all * sizeof *xyz);
+        memcpy(facet, facets->facet, count * sizeof *facet);
+        memcpy(facet + count, below->facet, below->facet_count * sizeof *facet);
+        size_t unique = 0;
+        status = swarf_weld(welded, all, map, &unique);
+        for (size_t i = all; status == SWARF_OK && i-- > 0;) first[map[i]] = (uint32_t)i;
+        for (size_t f = count; status == SWARF_OK && f < count + below->facet_count; f++)
+            for (int k = 0; k < 3; k++) facet[f].v[k] = first[map[own + facet[f].v[k]]];
+    }
+    free(welded);
+    free(map);
+    free(first);
+    if (status != SWARF_OK) {
+        free(xyz);
+        free(facet);
+        return status;
+    }
+    swarf_facets_free(facets);
+    *facets = (swarf_facets){xyz, all, facet, count + below->facet_count};
+    return SWARF_OK;
+}
+
 typedef struct stage {
     contour *work;
     const swarf_contour_options *options;
     const swarf_progress *progress;
-    swarf_facets facets;
-    swarf_contour_report report;
+    swarf_facets *facets;
+    swarf_contour_report *report;
 } stage;
 
+/* Pairs of facets that cut each other, those of two other bands aside. The facets stay, with all vertices; *left: pairs
+ * that the next band will not see again. */
+static swarf_status find_pairs(const stage *s, int first, swarf_facet_pair **pairs, size_t *count, size_t *left)
+{
+    const contour_band *band = s->work->band;
+    const size_t own = s->facets->facet_count;
+    if (band && band->below.facet_count) SWARF_TRY(append_below(&band->below, s->facets));
+    const swarf_status status = swarf_facets_intersect(s->facets, first ? s->progress : NULL, 0.9, 0.98, pairs, count);
+    s->facets->facet_count = own;
+    SWARF_TRY(status);
+    size_t kept = 0;
+    *left = 0;
+    for (size_t i = 0; i < *count; i++) {
+        const swarf_facet_pair pair = (*pairs)[i];
+        const int a = pair.a < own && !s->facets->facet[pair.a].beyond;
+        const int b = pair.b < own && !s->facets->facet[pair.b].beyond;
+        if (!a && !b) continue;
+        (*pairs)[kept++] = pair;
+        *left += (a || pair.a >= own) && (b || pair.b >= own);
+    }
+    *count = kept;
+    return SWARF_OK;
+}
+
 /* Join, simplify, look for facets that cut each other. */
-static swarf_status attempt(stage *s, int first, swarf_facet_pair **pairs, size_t *count)
+static swarf_status attempt(const stage *s, int first, swarf_facet_pair **pairs, size_t *count, size_t *left)
 {
     contour *work = s->work;
     const double voxel = work->layout->voxel;
     SWARF_TRY(swarf_parallel_for(work->block_count, tile_one, work, NULL, 0, 1));
     SWARF_TRY(number_vertices(work));
     SWARF_TRY(swarf_parallel_for(work->block_count, join_one, work, first ? s->progress : NULL, 0.6, 0.7));
-    SWARF_TRY(gather(work, &s->facets));
-    swarf_facets_snap(&s->facets);
-    for (size_t i = 0; first && i < work->block_count; i++) s->report.full_triangles += work->blocks[i].full_count;
-    uint8_t *kept = first ? NULL : kept_vertices(work, &s->facets);
-    if (!first && !kept) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    SWARF_TRY(gather(work, s->facets));
+    swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
+    for (size_t i = 0; first && i < work->block_count; i++)
+        if (swarf_contour_is_within(work, &work->blocks[i], 0)) s->report->full_triangles += work->blocks[i].full_count;
+    const int keeps = !first || work->band;
+    uint8_t *kept = keeps ? kept_vertices(work, s->facets) : NULL;
+    if (keeps && !kept) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     const swarf_status status =
-        swarf_facets_simplify(&s->facets, s->options->error_mm, voxel, s->options->triangle_budget, kept,
+        swarf_facets_simplify(s->facets, s->options->error_mm, voxel, s->options->triangle_budget, kept,
                               first ? s->progress : NULL, 0.7, 0.9);
     free(kept);
     SWARF_TRY(status);
-    return swarf_facets_intersect(&s->facets, first ? s->progress : NULL, 0.9, 0.98, pairs, count);
+    return find_pairs(s, first, pairs, count, left);
 }
 
 /* The next remedy for the cells noted; without an error to spend all vertices are kept already. */
-static void take_more_care(stage *s)
+static void take_more_care(const stage *s)
 {
     for (size_t b = 0; b < s->work->block_count; b++) {
         contour_block *block = &s->work->blocks[b];
         block->changed = 0;
+        if (block->finished) continue;
         for (int x = 0; x < 8; x++) {
             const uint64_t noted = block->noted_mask[x], kept = s->options->error_mm > 0 ? block->keep_mask[x] : noted;
             block->changed |= (noted & kept) != 0;
@@ -223,41 +301,65 @@ static void take_more_care(stage *s)
 }
 
 /* Attempt until no facets cut each other. */
-static swarf_status settle(stage *s)
+static swarf_status settle(const stage *s)
 {
     contour *work = s->work;
     for (int round = 0;; round++) {
         swarf_facet_pair *pairs = NULL;
-        size_t count = 0;
+        size_t count = 0, left = 0;
         SWARF_TRY(swarf_progress_report(s->progress, 0.6 + (round ? 0.39 : 0)));
-        SWARF_TRY(attempt(s, round == 0, &pairs, &count));
-        if (round == 0) s->report.intersections_found = count;
-        s->report.intersections_left = count;
-        for (size_t i = 0; i < count; i++) note_cells(work, &s->facets, &pairs[i]);
+        SWARF_TRY(attempt(s, round == 0, &pairs, &count, &left));
+        if (round == 0) s->report->intersections_found += count;
+        for (size_t i = 0; i < count; i++) note_cells(work, s->facets, &pairs[i]);
         free(pairs);
-        if (count == 0 || round == ATTEMPTS) return SWARF_OK;
+        if (count == 0 || round == ATTEMPTS) {
+            s->report->intersections_left += left;
+            return SWARF_OK;
+        }
         take_more_care(s);
         SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, NULL, 0, 1));
     }
 }
 
-static swarf_status to_mesh(stage *s, swarf_mesh **out)
+swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *options, const swarf_progress *progress,
+                                  swarf_facets *facets, swarf_contour_report *report)
 {
-    const size_t count = s->facets.facet_count;
-    swarf_mesh_data data = {.xyz = s->facets.xyz, .vertex_count = s->facets.vertex_count, .triangle_count = count};
-    s->facets.xyz = NULL;
+    const stage s = {work, options, progress, facets, report};
+    swarf_contour_table_fill(&work->table);
+    SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, progress, 0, 0.3));
+    SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, progress, 0.3, 0.6));
+    for (size_t i = 0; i < work->block_count; i++) {
+        const contour_block *block = &work->blocks[i];
+        if (!swarf_contour_is_within(work, block, 0)) continue;
+        report->sharp_vertices += block->sharp_count;
+        report->exact_vertices += block->exact_count;
+        for (int x = 0; x < 8; x++) report->parted_cells -= (size_t)__builtin_popcountll(block->cell_mask[x]);
+        report->parted_cells += block->vertex_count;
+    }
+    SWARF_TRY(settle(&s));
+    size_t own = 0;
+    for (size_t f = 0; f < facets->facet_count; f++) {
+        if (facets->facet[f].beyond) continue;
+        facets->facet[own++] = facets->facet[f];
+        report->error_mm = fmax(report->error_mm, (double)facets->facet[f].error_mm);
+    }
+    facets->facet_count = own;
+    report->triangles += own;
+    report->budget_met = !options->triangle_budget || report->triangles <= options->triangle_budget;
+    return SWARF_OK;
+}
+
+static swarf_status to_mesh(swarf_facets *facets, swarf_mesh **out)
+{
+    const size_t count = facets->facet_count;
+    swarf_mesh_data data = {.xyz = facets->xyz, .vertex_count = facets->vertex_count, .triangle_count = count};
+    facets->xyz = NULL;
     data.index = malloc((3 * count + 1) * sizeof *data.index);
     if (!data.index) {
         swarf_mesh_data_free(&data);
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for %zu triangles", count);
     }
-    for (size_t f = 0; f < count; f++) {
-        const swarf_facet *facet = &s->facets.facet[f];
-        memcpy(data.index + 3 * f, facet->v, sizeof facet->v);
-        s->report.error_mm = fmax(s->report.error_mm, (double)facet->error_mm);
-    }
-    s->report.triangles = count;
-    s->report.budget_met = !s->options->triangle_budget || count <= s->options->triangle_budget;
+    for (size_t f = 0; f < count; f++) memcpy(data.index + 3 * f, facets->facet[f].v, sizeof facets->facet[f].v);
     return swarf_mesh_adopt(&data, out);
 }
 
@@ -272,25 +374,18 @@ static swarf_status check_closed(const swarf_mesh *mesh)
                       topology.boundary_edges);
 }
 
-static swarf_status make(stage *s, swarf_mesh **out)
+static swarf_status make(contour *work, const swarf_contour_options *options, const swarf_progress *progress,
+                         swarf_mesh **out, swarf_contour_report *report)
 {
-    contour *work = s->work;
-    swarf_contour_table_fill(&work->table);
-    SWARF_TRY(swarf_contour_blocks(work));
-    SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, s->progress, 0, 0.3));
-    SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, s->progress, 0.3, 0.6));
-    for (size_t i = 0; i < work->block_count; i++) {
-        const contour_block *block = &work->blocks[i];
-        s->report.sharp_vertices += block->sharp_count;
-        s->report.exact_vertices += block->exact_count;
-        for (int x = 0; x < 8; x++) s->report.parted_cells -= (size_t)__builtin_popcountll(block->cell_mask[x]);
-        s->report.parted_cells += block->vertex_count;
-    }
-    SWARF_TRY(settle(s));
-    swarf_mesh *mesh;
-    SWARF_TRY(to_mesh(s, &mesh));
-    swarf_status status = check_closed(mesh);
-    if (status == SWARF_OK) status = swarf_progress_report(s->progress, 1);
+    swarf_facets facets = {0};
+    swarf_mesh *mesh = NULL;
+    swarf_status status = swarf_contour_blocks(work);
+    if (status == SWARF_OK) status = swarf_contour_settle(work, options, progress, &facets, report);
+    if (status == SWARF_OK) status = to_mesh(&facets, &mesh);
+    swarf_facets_free(&facets);
+    SWARF_TRY(status);
+    status = check_closed(mesh);
+    if (status == SWARF_OK) status = swarf_progress_report(progress, 1);
     if (status != SWARF_OK) {
         swarf_mesh_release(mesh);
         return status;
@@ -299,10 +394,8 @@ static swarf_status make(stage *s, swarf_mesh **out)
     return SWARF_OK;
 }
 
-swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options *options,
-                                const swarf_progress *progress, swarf_mesh **out, swarf_contour_report *report)
+swarf_status swarf_contour_begin(swarf_stock *stock, const swarf_contour_options *options, contour *out)
 {
-    SWARF_REQUIRE(out, "mesh: output missing");
     SWARF_REQUIRE(options && options->size == sizeof *options, "mesh: options missing or of another version");
     SWARF_REQUIRE(isfinite(options->error_mm) && options->error_mm >= 0, "mesh: error %g mm is not 0 or positive",
                   options->error_mm);
@@ -310,15 +403,23 @@ swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options 
                   "mesh: a budget of %zu triangles needs an error (mm) that may be spent on it",
                   options->triangle_budget);
     SWARF_TRY(swarf_stock_enter_read(stock));
-    contour work = {.stock = stock,
-                    .layout = swarf_tree_get_layout(stock->tree),
-                    .surface = options->surface,
-                    .moves = options->moves,
-                    .error_mm = options->error_mm};
-    stage s = {.work = &work, .options = options, .progress = progress};
-    const swarf_status status = make(&s, out);
-    if (status == SWARF_OK && report) *report = s.report;
-    swarf_facets_free(&s.facets);
+    *out = (contour){.stock = stock,
+                     .layout = swarf_tree_get_layout(stock->tree),
+                     .surface = options->surface,
+                     .moves = options->moves,
+                     .error_mm = options->error_mm};
+    return SWARF_OK;
+}
+
+swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options *options,
+                                const swarf_progress *progress, swarf_mesh **out, swarf_contour_report *report)
+{
+    SWARF_REQUIRE(out, "mesh: output missing");
+    contour work;
+    SWARF_TRY(swarf_contour_begin(stock, options, &work));
+    swarf_contour_report made = {0};
+    const swarf_status status = make(&work, options, progress, out, &made);
+    if (status == SWARF_OK && report) *report = made;
     swarf_contour_free(&work);
     swarf_stock_leave(stock);
     return status;

@@ -83,6 +83,7 @@ typedef struct contour_block {
     uint64_t middle_mask[8]; /* and are in the middle of their crossings, which never cut each other */
     uint64_t noted_mask[8];  /* to go one further */
     int changed;             /* vertices are to be placed again */
+    int finished;            /* of the band before: only looked at */
     uint32_t vertex_count;
     uint32_t left_count; /* vertices without those that others stand for */
     uint32_t facet_count;
@@ -114,26 +115,56 @@ typedef struct contour_block {
 #define SWARF_TILE_FLAT 0.005
 #define SWARF_TILE_ERROR (10 * SWARF_TILE_FLAT)
 
+/** A part of the stock that is made on its own: the edges of the voxels first .. end - 1 along x, in layers of blocks.
+ *
+ *   below first     one layer, finished by the band before
+ *   first .. end    joined, simplified, written
+ *   from end on     a layer that is joined and simplified too, so that facets of both sides are kept from cutting each
+ *                   other, and made again by the next band; one placed and one crossed, as those below look there
+ *
+ * What two bands share are the vertices of the cells beside the plane between them, which stay. */
+typedef struct contour_band {
+    int32_t first, end; /* multiples of SWARF_LEAF_DIM */
+    double step;        /* mm; positions of all bands are rounded to multiples of it */
+    swarf_facets below; /* finished facets that reach into it */
+} contour_band;
+
 typedef struct contour {
     const swarf_stock *stock;
     const swarf_tree_layout *layout;
     const swarf_surface *surface; /* NULL: the field alone */
     size_t moves;                 /* of the surface that the stock has seen */
     double error_mm;              /* that may be spent */
+    const contour_band *band;     /* NULL: all of the stock */
     contour_table table;
     contour_block *blocks;
     size_t block_count;
     uint32_t *block_at; /* by node * 4096 + slot; UINT32_MAX: none */
 } contour;
 
-/** Blocks that cells of the surface may lie in. */
+/** Check the options and enter the stock for reading; its caller leaves it. */
+swarf_status swarf_contour_begin(swarf_stock *stock, const swarf_contour_options *options, contour *out);
+/** Blocks that cells of the surface may lie in, those of the band and about it. */
 swarf_status swarf_contour_blocks(contour *work);
+/** All passes, until no facets cut each other: the facets of the band, and what they came to (added to *report). The
+ *  blocks are there; those that are finished stay as they are. */
+swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *options, const swarf_progress *progress,
+                                  swarf_facets *facets, swarf_contour_report *report);
+/** Whether a block is of the band or within so many layers above it. */
+static inline int swarf_contour_is_within(const contour *work, const contour_block *block, int above)
+{
+    const contour_band *band = work->band;
+    return !band || (block->ijk[0] >= band->first && block->ijk[0] < band->end + above * SWARF_LEAF_DIM);
+}
 /** The passes, one block each. */
 swarf_status swarf_contour_cross(contour *work, contour_block *block);
 swarf_status swarf_contour_place(contour *work, contour_block *block);
 swarf_status swarf_contour_tile(contour *work, contour_block *block);
 swarf_status swarf_contour_join(contour *work, contour_block *block);
 void swarf_contour_free(contour *work);
+/** Free the blocks only. */
+void swarf_contour_clear(contour *work);
+void swarf_contour_block_free(contour_block *block);
 
 /** A crossing on the exact surface, from what the field makes of it; `a`: the edge's voxel in mm, `outwards`: that is
  *  material. Where there is no such surface the crossing stays as it is. */

@@ -36,6 +36,11 @@ contour_block *swarf_contour_block_at(const contour *work, const int32_t ijk[3])
     return place < 0 || work->block_at[place] == UINT32_MAX ? NULL : &work->blocks[work->block_at[place]];
 }
 
+static int is_wanted(const contour_band *band, int32_t x)
+{
+    return !band || (x >= band->first - SWARF_LEAF_DIM && x < band->end + 3 * SWARF_LEAF_DIM);
+}
+
 /* A cell of the surface has a corner in a leaf, so its low corner lies in that leaf or in one of the seven below. */
 swarf_status swarf_contour_blocks(contour *work)
 {
@@ -56,7 +61,7 @@ swarf_status swarf_contour_blocks(contour *work)
                                     leaves[i].ijk[1] - (c >> 1 & 1) * SWARF_LEAF_DIM,
                                     leaves[i].ijk[2] - (c & 1) * SWARF_LEAF_DIM};
             const ptrdiff_t place = place_of(layout, ijk);
-            if (place >= 0) work->block_at[place] = 0;
+            if (place >= 0 && is_wanted(work->band, ijk[0])) work->block_at[place] = 0;
         }
     free(leaves);
     for (size_t place = 0; place < places; place++)
@@ -237,19 +242,29 @@ const contour_crossing *swarf_contour_crossing(const contour *work, const contou
            __builtin_popcountll(word & ((UINT64_C(1) << bit) - 1));
 }
 
-void swarf_contour_free(contour *work)
+void swarf_contour_block_free(contour_block *block)
 {
-    for (size_t i = 0; work->blocks && i < work->block_count; i++) {
-        contour_block *block = &work->blocks[i];
-        free(block->crossings);
-        free(block->cells);
-        free(block->vertices);
-        free(block->tile);
-        free(block->left);
-        free(block->centres);
-        free(block->facets);
-    }
+    free(block->crossings);
+    free(block->cells);
+    free(block->vertices);
+    free(block->tile);
+    free(block->left);
+    free(block->centres);
+    free(block->facets);
+}
+
+void swarf_contour_clear(contour *work)
+{
+    for (size_t i = 0; work->blocks && i < work->block_count; i++) swarf_contour_block_free(&work->blocks[i]);
     free(work->blocks);
     free(work->block_at);
+    work->blocks = NULL;
+    work->block_at = NULL;
+    work->block_count = 0;
+}
+
+void swarf_contour_free(contour *work)
+{
+    swarf_contour_clear(work);
     memset(work, 0, sizeof *work);
 }

@@ -9,6 +9,7 @@ typedef struct swarf_facet {
     uint32_t v[3];
     float error_mm;    /* bound of the distance to the first triangles here */
     int16_t normal[3]; /* of the surface where the facet was made, * 32767 */
+    int16_t beyond;    /* 1: of the next band (see contour.h) */
 } swarf_facet;
 
 /** Vertices and facets of one surface. */

@@ -38,6 +38,13 @@ typedef struct tree {
     found *chunks;
 } tree;
 
+double swarf_facets_step(double most)
+{
+    int exponent;
+    frexp(most > 0 ? most : 1, &exponent);
+    return ldexp(1, exponent - 24);
+}
+
 static double step_of(const swarf_facets *facets)
 {
     float most = 0;
@@ -45,15 +52,13 @@ static double step_of(const swarf_facets *facets)
         const float size = fabsf(facets->xyz[i]);
         most = size > most ? size : most;
     }
-    int exponent;
-    frexp(most > 0 ? (double)most : 1, &exponent);
-    return ldexp(1, exponent - 24);
+    return swarf_facets_step((double)most);
 }
 
-void swarf_facets_snap(swarf_facets *facets)
+void swarf_facets_snap(swarf_facets *facets, double least)
 {
     /* adding and taking away 1.5 * 2^52 steps rounds to whole steps */
-    const double step = step_of(facets), magic = 0x1.8p52 * step;
+    const double step = fmax(step_of(facets), least), magic = 0x1.8p52 * step;
     for (size_t i = 0; i < 3 * facets->vertex_count; i++)
         facets->xyz[i] = (float)((double)facets->xyz[i] + magic - magic);
 }

@@ -5,9 +5,12 @@
 
 #include "mesh/facets.h"
 
-/** Round positions to the grid of floats of the greatest coordinate, so that differences are whole numbers of 25 bits
- *  and every decision below is exact. */
-void swarf_facets_snap(swarf_facets *facets);
+/** Steps of floats as large as `most`: positions up to it that are whole numbers of steps have differences of 25 bits,
+ *  so that every decision below is exact. */
+double swarf_facets_step(double most);
+
+/** Round positions to the steps of their greatest coordinate, or to `least` where that is more. */
+void swarf_facets_snap(swarf_facets *facets, double least);
 
 typedef struct swarf_facet_pair {
     uint32_t a, b;

@@ -2,12 +2,13 @@
 /* STL. Binary: 80 bytes of anything, a 32-bit count, then per triangle 12 floats (normal, 3 corners) and 2 bytes,
  * little-endian. Text: solid / facet normal / outer loop / 3 vertices / endloop / endfacet / endsolid.
  * Normals are written but not read: the order of the corners says the same. */
-#include "mesh/mesh.h"
+#include "mesh/stl.h"
 
 #include "base/parallel.h"
 #include "base/status.h"
 #include "mesh/text.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -159,17 +160,20 @@ static void write_record(const swarf_triangles *t, size_t i, unsigned char *reco
     record[48] = record[49] = 0;
 }
 
-swarf_status swarf_stl_write(const swarf_triangles *t, const uint8_t *rgb, FILE *stream, const swarf_progress *progress)
+swarf_status swarf_stl_write_header(size_t triangles, FILE *stream)
 {
-    (void)rgb;
-    if (t->triangle_count > UINT32_MAX)
-        return swarf_fail(SWARF_ERROR_ARGUMENT, "mesh: %zu triangles are more than an STL file can count",
-                          t->triangle_count);
+    if (triangles > UINT32_MAX)
+        return swarf_fail(SWARF_ERROR_ARGUMENT, "mesh: %zu triangles are more than an STL file can count", triangles);
+    unsigned char header[HEADER] = "Swarf binary STL, mm"; /* must not start with "solid" */
+    write_u32(header + 80, (uint32_t)triangles);
+    fwrite(header, 1, HEADER, stream); /* what fails is found when the file is closed */
+    return SWARF_OK;
+}
+
+swarf_status swarf_stl_write_records(const swarf_triangles *t, FILE *stream, const swarf_progress *progress)
+{
     unsigned char *buffer = malloc((size_t)CHUNK * RECORD);
     if (!buffer) return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
-    unsigned char header[HEADER] = "Swarf binary STL, mm"; /* must not start with "solid" */
-    write_u32(header + 80, (uint32_t)t->triangle_count);
-    fwrite(header, 1, HEADER, stream);
     swarf_status status = SWARF_OK;
     for (size_t first = 0; first < t->triangle_count && status == SWARF_OK; first += CHUNK) {
         const size_t left = t->triangle_count - first, count = left < CHUNK ? left : CHUNK;
@@ -179,4 +183,17 @@ swarf_status swarf_stl_write(const swarf_triangles *t, const uint8_t *rgb, FILE 
     }
     free(buffer);
     return status;
+}
+
+swarf_status swarf_stl_finish(FILE *stream, size_t triangles)
+{
+    if (fseek(stream, 0, SEEK_SET) != 0) return swarf_fail(SWARF_ERROR_IO, "mesh: cannot write: %s", strerror(errno));
+    return swarf_stl_write_header(triangles, stream);
+}
+
+swarf_status swarf_stl_write(const swarf_triangles *t, const uint8_t *rgb, FILE *stream, const swarf_progress *progress)
+{
+    (void)rgb;
+    SWARF_TRY(swarf_stl_write_header(t->triangle_count, stream));
+    return swarf_stl_write_records(t, stream, progress);
 }

@@ -90,7 +90,7 @@ static void check_random(int count)
     for (int i = 0; i < count; i++) {
         const double voxel = test_random_in(&random, 0.05, 0.2);
         swarf_surface *surface = NULL;
-        swarf_stock *stock = random_stock(&random, voxel, &surface);
+        swarf_stock *stock = random_stock(&random, voxel, 6, &surface);
         char name[64];
         if (!stock) continue;
         snprintf(name, sizeof name, "random program %d, voxel %.3f", i, voxel);

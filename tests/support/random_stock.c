@@ -5,12 +5,12 @@
 
 enum { CUTTERS = 4 };
 
-swarf_stock *random_stock(test_random *random, double voxel, swarf_surface **surface)
+swarf_stock *random_stock(test_random *random, double voxel, double length, swarf_surface **surface)
 {
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = voxel;
     const double offset = test_random_in(random, -50, 50);
-    const swarf_box box = {{offset, 0, -5}, {offset + 6, 6, 0}};
+    const swarf_box box = {{offset, 0, -5}, {offset + length, 6, 0}};
     swarf_stock *stock = NULL;
     if (!CHECK_OK(swarf_stock_create_box(&box, &options, &stock))) return NULL;
     swarf_stock *first = NULL;
@@ -32,8 +32,8 @@ swarf_stock *random_stock(test_random *random, double voxel, swarf_surface **sur
         for (int k = 0; k < PATHS; k++) {
             paths[k].has_motion = 1;
             for (int c = 0; c < 2; c++) {
-                paths[k].start[c] = (c == 0 ? offset : 0) + test_random_in(random, -1, 7);
-                paths[k].end[c] = (c == 0 ? offset : 0) + test_random_in(random, -1, 7);
+                paths[k].start[c] = (c == 0 ? offset : 0) + test_random_in(random, -1, c == 0 ? length + 1 : 7);
+                paths[k].end[c] = (c == 0 ? offset : 0) + test_random_in(random, -1, c == 0 ? length + 1 : 7);
             }
             paths[k].start[2] = test_random_in(random, -5.5, 0.5);
             paths[k].end[2] = test_random_below(random, 2) ? paths[k].start[2] : test_random_in(random, -5.5, 0.5);

@@ -5,8 +5,8 @@
 
 #include "test.h"
 
-/** A block of 6 x 6 x 5 mm after some straight moves of four small cutters, and its exact surface; both owned by the
- *  caller. NULL when it could not be made. */
-swarf_stock *random_stock(test_random *random, double voxel, swarf_surface **surface);
+/** A block of `length` x 6 x 5 mm after some straight moves of four small cutters, and its exact surface; both owned by
+ * the caller. NULL when it could not be made. */
+swarf_stock *random_stock(test_random *random, double voxel, double length, swarf_surface **surface);
 
 #endif

@@ -54,6 +54,15 @@ SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contou
                                           const swarf_progress *progress, swarf_mesh **out,
                                           swarf_contour_report *report);
 
+/** The mesh of swarf_mesh_contour() straight to a binary .stl file. Where the whole mesh would not fit into
+ *  memory_limit (bytes; 0: 80 % of what is free now) it is made and written band by band along x, of 256 or 64 voxels:
+ *  then it needs the memory of a band beside the stock's, triangles stay small along the planes between bands, and all
+ * else that swarf_mesh_contour() promises holds. Without a budget. SWARF_ERROR_ARGUMENT: another suffix, a budget, more
+ *  triangles than the format can count; SWARF_ERROR_IO; those of swarf_mesh_contour(). `report` may be NULL. */
+SWARF_API swarf_status swarf_mesh_stream(swarf_stock *stock, const swarf_contour_options *options, size_t memory_limit,
+                                         const char *path, const swarf_progress *progress,
+                                         swarf_contour_report *report);
+
 /** What made each triangle: the point of the surface, after its first `moves`, that is nearest along the normal to the
  *  triangle's middle, no farther than reach_mm (0: a voxel); `move` -2 where there is none. `out`: one per triangle. */
 SWARF_API swarf_status swarf_mesh_origins(const swarf_mesh *mesh, const swarf_surface *surface, size_t moves,
