@@ -199,11 +199,8 @@ PyObject *mesh_section(PyObject *self, PyObject *args, PyObject *keywords)
     return result;
 }
 
-PyObject *mesh_contour(PyObject *self, void *Py_UNUSED(closure))
+PyObject *contour_tuple(module_state *state, const swarf_contour_report *r)
 {
-    const mesh_object *mesh = (const mesh_object *)self;
-    if (!mesh->from_stock) Py_RETURN_NONE;
-    const swarf_contour_report *r = &mesh->contour;
     PyObject *const values[] = {PyLong_FromSize_t(r->full_triangles),
                                 PyLong_FromSize_t(r->triangles),
                                 PyLong_FromSize_t(r->sharp_vertices),
@@ -213,7 +210,14 @@ PyObject *mesh_contour(PyObject *self, void *Py_UNUSED(closure))
                                 PyLong_FromSize_t(r->intersections_left),
                                 PyFloat_FromDouble(r->error_mm),
                                 PyBool_FromLong(r->budget_met)};
-    return sequence_of(state_of(self)->contour, values, sizeof values / sizeof *values);
+    return sequence_of(state->contour, values, sizeof values / sizeof *values);
+}
+
+PyObject *mesh_contour(PyObject *self, void *Py_UNUSED(closure))
+{
+    const mesh_object *mesh = (const mesh_object *)self;
+    if (!mesh->from_stock) Py_RETURN_NONE;
+    return contour_tuple(state_of(self), &mesh->contour);
 }
 
 const char mesh_split_doc[] = "split($self, point, normal)\n--\n\n"

@@ -82,31 +82,44 @@ static PyObject *mesh_read(PyObject *type, PyObject *args, PyObject *keywords)
     return result;
 }
 
+/** What meshes of a stock are made with; 0, or -1 with an exception. */
+static int read_options(const module_state *state, double error, PyObject *given, PyObject *moves,
+                        swarf_contour_options *out)
+{
+    if (given != Py_None && !PyObject_TypeCheck(given, state->surface)) {
+        PyErr_Format(PyExc_TypeError, "surface: needs a Surface or None");
+        return -1;
+    }
+    const surface_object *surface = given == Py_None ? NULL : (const surface_object *)given;
+    size_t from, count = 0;
+    if (!surface && moves != Py_None) {
+        PyErr_Format(PyExc_ValueError, "moves: they are those of a surface, which was not given");
+        return -1;
+    }
+    if (surface && program_range(surface->program, 0, moves, &from, &count)) return -1;
+    *out = swarf_contour_options_default();
+    out->error_mm = error;
+    out->surface = surface ? surface->handle : NULL;
+    out->moves = count;
+    return 0;
+}
+
 static PyObject *mesh_from_stock(PyObject *type, PyObject *args, PyObject *keywords)
 {
     static char *names[] = {"stock", "error", "budget", "surface", "moves", "progress", NULL};
     module_state *state = state_of_type((PyTypeObject *)type);
-    PyObject *stock, *given = Py_None, *moves = Py_None, *progress = NULL;
+    PyObject *stock, *surface = Py_None, *moves = Py_None, *progress = NULL;
     double error = 0;
     Py_ssize_t budget = 0;
+    swarf_contour_options options;
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$nOOO:from_stock", names, state->stock, &stock, &error,
-                                     &budget, &given, &moves, &progress))
+                                     &budget, &surface, &moves, &progress) ||
+        read_options(state, error, surface, moves, &options))
         return NULL;
-    if (given != Py_None && !PyObject_TypeCheck(given, state->surface))
-        return PyErr_Format(PyExc_TypeError, "surface: needs a Surface or None");
-    const surface_object *surface = given == Py_None ? NULL : (const surface_object *)given;
-    size_t from, count = 0;
-    if (!surface && moves != Py_None)
-        return PyErr_Format(PyExc_ValueError, "moves: they are those of a surface, which was not given");
-    if (surface && program_range(surface->program, 0, moves, &from, &count)) return NULL;
     if (budget < 0) return PyErr_Format(PyExc_ValueError, "budget: %zd is not a number of triangles", budget);
+    options.triangle_budget = (size_t)budget;
     native_call call;
     if (call_begin(&call, progress)) return NULL;
-    swarf_contour_options options = swarf_contour_options_default();
-    options.error_mm = error;
-    options.triangle_budget = (size_t)budget;
-    options.surface = surface ? surface->handle : NULL;
-    options.moves = count;
     swarf_contour_report report;
     swarf_mesh *handle = NULL;
     const swarf_status status =
@@ -117,6 +130,46 @@ static PyObject *mesh_from_stock(PyObject *type, PyObject *args, PyObject *keywo
         ((mesh_object *)result)->from_stock = 1;
     }
     return result;
+}
+
+typedef struct streaming {
+    swarf_stock *stock;
+    const swarf_contour_options *options;
+    size_t memory_limit;
+    swarf_contour_report report;
+} streaming;
+
+static swarf_status stream_to(void *context, const char *path, const swarf_progress *progress)
+{
+    streaming *s = context;
+    return swarf_mesh_stream(s->stock, s->options, s->memory_limit, path, progress, &s->report);
+}
+
+static PyObject *mesh_stream(PyObject *type, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"stock", "path", "error", "surface", "moves", "memory_limit", "progress", NULL};
+    module_state *state = state_of_type((PyTypeObject *)type);
+    PyObject *stock, *path, *surface = Py_None, *moves = Py_None, *progress = NULL;
+    double error = 0;
+    Py_ssize_t limit = 0;
+    swarf_contour_options options;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O&|d$OOnO:stream", names, state->stock, &stock,
+                                     PyUnicode_FSConverter, &path, &error, &surface, &moves, &limit, &progress))
+        return NULL;
+    int bad = read_options(state, error, surface, moves, &options);
+    if (!bad && limit < 0) {
+        PyErr_Format(PyExc_ValueError, "memory_limit: %zd is not a number of bytes", limit);
+        bad = -1;
+    }
+    if (bad) {
+        Py_DECREF(path);
+        return NULL;
+    }
+    streaming s = {.stock = ((stock_object *)stock)->handle, .options = &options, .memory_limit = (size_t)limit};
+    PyObject *done = call_write(state, &s, path, progress, stream_to);
+    if (!done) return NULL;
+    Py_DECREF(done);
+    return contour_tuple(state, &s.report);
 }
 
 typedef struct writing {
@@ -245,6 +298,11 @@ static PyMethodDef mesh_methods[] = {
      "(0: as few as the error allows). Vertices lie exactly on the Surface of which the stock has seen the first\n"
      "``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. What it came to is in\n"
      "``contour``."},
+    {"stream", WITH_KEYWORDS(mesh_stream), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
+     "stream($type, stock, path, error=0.0, *, surface=None, moves=None, memory_limit=0, progress=None)\n--\n\n"
+     "The mesh of from_stock() straight to a binary .stl file; its Contour. One that would not fit into\n"
+     "``memory_limit`` (bytes; 0: 80 % of what is free now) is made and written band by band along x, with small\n"
+     "triangles along the planes between them."},
     {"write", WITH_KEYWORDS(mesh_write), METH_VARARGS | METH_KEYWORDS,
      "write($self, path, *, colors=None, progress=None)\n--\n\n"
      "Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure "

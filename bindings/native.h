@@ -236,6 +236,8 @@ PyObject *mesh_section(PyObject *self, PyObject *args, PyObject *keywords);
 PyObject *mesh_split(PyObject *self, PyObject *args, PyObject *keywords);
 PyObject *mesh_thickness(PyObject *self, PyObject *args, PyObject *keywords);
 PyObject *mesh_contour(PyObject *self, void *closure);
+/** A Contour. */
+PyObject *contour_tuple(module_state *state, const swarf_contour_report *report);
 
 /* ---- mesh.c ---- */
 

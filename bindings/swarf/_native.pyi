@@ -643,6 +643,21 @@ class Mesh:
         left (0: as few as the error allows). Vertices lie exactly on the Surface of which the stock has seen the first
         ``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. What it came to is in
         ``contour``."""
+    @classmethod
+    def stream(
+        cls,
+        stock: Stock,
+        path: Path,
+        error: float = 0.0,
+        *,
+        surface: Optional[Surface] = None,
+        moves: Optional[int] = None,
+        memory_limit: int = 0,
+        progress: Progress = None,
+    ) -> Contour:
+        """The mesh of from_stock() straight to a binary .stl file; its Contour. One that would not fit into
+        ``memory_limit`` (bytes; 0: 80 % of what is free now) is made and written band by band along x, with small
+        triangles along the planes between them."""
     def write(self, path: Path, *, colors: Optional[Table] = None, progress: Progress = None) -> None:
         """Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure
         loses nothing. ``colors`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."""

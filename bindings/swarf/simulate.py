@@ -74,7 +74,7 @@ def simulate(
 
     Where the stock is what another job leaves, that is played first. ``voxel`` in mm, or ``resolution`` voxels along the stock's longest edge (512 unless told); ``batch`` as in
     Stock.simulate(). The stock is compared with the design when the job has one. A mesh is made when ``mesh`` is true
-    or an output needs it; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file.
+    or an output needs it, and goes straight to its file where only .stl files do; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file.
     ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by, deviations green within
     ``tolerance`` (mm). Pieces that come loose are in
     the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. Seconds of each stage
@@ -110,7 +110,9 @@ def simulate(
     result = Result(job, stock, simulation, seconds=seconds, before=first.played, surface=exact)
     result.loose = timed("loose", lambda report: loose.find(
         job, stock, lambda part: make_stock(job.stock, voxel=stock.voxel, progress=part), report))
-    if exact is not None:
+    streamed = exact is not None and not (mesh or drop_loose or colour) and streams(
+        [path for path in outputs if output_suffix(path) in MESH_SUFFIXES])
+    if exact is not None and not streamed:
         result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
                                                                    progress=report))
     if drop_loose and (result.loose.pieces or result.loose.crumbs):
@@ -127,7 +129,10 @@ def simulate(
     if colour is not None and result.mesh is not None:
         tints = timed("mesh", lambda report: colours.make(colour, result.mesh, exact, job, tolerance, progress=report))
     for path in outputs:
-        if output_suffix(path) in MESH_SUFFIXES:
+        if output_suffix(path) in MESH_SUFFIXES and streamed:
+            timed("mesh", lambda report: Mesh.stream(stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
+                                                     progress=report))
+        elif output_suffix(path) in MESH_SUFFIXES:
             timed("write", lambda report: result.mesh.write(path, colors=tints, progress=report))
         else:
             timed("write", lambda report: stock.write(path, progress=report))
@@ -137,6 +142,11 @@ def simulate(
         timed("picture", lambda report: scene.render(camera, width, height, progress=report).write(picture))
     seconds["total"] = time.perf_counter() - started
     return result
+
+
+def streams(paths: Sequence[str]) -> bool:
+    """Whether a mesh for these files alone can be written without being in memory as a whole."""
+    return len(paths) == 1 and os.path.splitext(os.fspath(paths[0]))[1].lower() == ".stl"
 
 
 def output_suffix(path: str) -> str:

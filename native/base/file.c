@@ -69,6 +69,22 @@ static char *follow_links(const char *path)
     return NULL;
 }
 
+/* Beside the target and for its owner and others as the system's mask says; what it is called is in `temporary`. */
+static FILE *open_beside(char *temporary)
+{
+    const int descriptor = mkstemp(temporary);
+    if (descriptor < 0) return NULL;
+    const mode_t mask = umask(0);
+    umask(mask);
+    (void)fchmod(descriptor, 0666 & ~mask); /* mkstemp makes it private */
+    FILE *stream = fdopen(descriptor, "wb");
+    if (!stream) {
+        close(descriptor);
+        unlink(temporary);
+    }
+    return stream;
+}
+
 swarf_status swarf_file_begin(const char *path, swarf_file_writer *writer)
 {
     SWARF_REQUIRE(path && *path && writer, "file: path missing");
@@ -76,28 +92,26 @@ swarf_status swarf_file_begin(const char *path, swarf_file_writer *writer)
     if (!copy)
         return errno == ELOOP ? swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", path, strerror(errno))
                               : swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
-    const size_t length = strlen(copy);
-    char *temporary = malloc(length + 8);
-    if (!temporary) {
+    struct stat info;
+    const int exists = stat(copy, &info) == 0;
+    if (exists && S_ISDIR(info.st_mode)) {
         free(copy);
-        return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
+        return swarf_fail(SWARF_ERROR_IO, "%s: is a folder, not a file", path);
     }
-    memcpy(temporary, copy, length);
-    memcpy(temporary + length, ".XXXXXX", 8);
-    const int descriptor = mkstemp(temporary);
-    FILE *stream = NULL;
-    if (descriptor >= 0) {
-        const mode_t mask = umask(0);
-        umask(mask);
-        (void)fchmod(descriptor, 0666 & ~mask); /* mkstemp makes it private */
-        stream = fdopen(descriptor, "wb");
+    const size_t length = strlen(copy);
+    char *temporary = NULL;
+    if (!exists || S_ISREG(info.st_mode)) { /* devices and pipes are written to, not replaced */
+        temporary = malloc(length + 8);
+        if (!temporary) {
+            free(copy);
+            return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
+        }
+        memcpy(temporary, copy, length);
+        memcpy(temporary + length, ".XXXXXX", 8);
     }
+    FILE *stream = temporary ? open_beside(temporary) : fopen(copy, "wb");
     if (!stream) {
         const swarf_status status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", path, strerror(errno));
-        if (descriptor >= 0) {
-            close(descriptor);
-            unlink(temporary);
-        }
         free(copy);
         free(temporary);
         return status;
@@ -110,20 +124,33 @@ swarf_status swarf_file_begin(const char *path, swarf_file_writer *writer)
 
 static void forget(swarf_file_writer *writer)
 {
+    if (writer->temporary && writer->temporary[0]) unlink(writer->temporary);
     free(writer->path);
     free(writer->temporary);
     memset(writer, 0, sizeof *writer);
 }
 
+/* Why writing failed some time ago: trying again tells, and what is written then is thrown away. */
+static const char *reason_of(FILE *stream)
+{
+    clearerr(stream);
+    const int again = fputc(0, stream) == EOF || fflush(stream) != 0;
+    return again ? strerror(errno) : "it failed a moment ago";
+}
+
 swarf_status swarf_file_commit(swarf_file_writer *writer)
 {
     swarf_status status = SWARF_OK;
-    const int bad = ferror(writer->stream);
-    if (fclose(writer->stream) != 0 || bad)
+    if (fflush(writer->stream) != 0 || ferror(writer->stream))
+        status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", writer->path, reason_of(writer->stream));
+    if (fclose(writer->stream) != 0 && status == SWARF_OK)
         status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", writer->path, strerror(errno));
-    else if (rename(writer->temporary, writer->path) != 0)
-        status = swarf_fail(SWARF_ERROR_IO, "%s: cannot replace: %s", writer->path, strerror(errno));
-    if (status != SWARF_OK) unlink(writer->temporary);
+    if (status == SWARF_OK && writer->temporary) {
+        if (rename(writer->temporary, writer->path) != 0)
+            status = swarf_fail(SWARF_ERROR_IO, "%s: cannot replace: %s", writer->path, strerror(errno));
+        else
+            writer->temporary[0] = 0; /* gone */
+    }
     forget(writer);
     return status;
 }
@@ -132,7 +159,6 @@ void swarf_file_abandon(swarf_file_writer *writer)
 {
     if (!writer->stream) return;
     fclose(writer->stream);
-    unlink(writer->temporary);
     forget(writer);
 }
 

@@ -14,7 +14,8 @@ extern "C" {
 /** Read a whole file; *data is followed by a 0 byte and freed by the caller with free(). */
 swarf_status swarf_file_read(const char *path, char **data, size_t *length);
 
-/** A file being written beside its target and renamed over it when complete. */
+/** A file being written beside its target and renamed over it when complete; into the target itself where that is a
+ *  device or a pipe (`temporary` is NULL). */
 typedef struct swarf_file_writer {
     FILE *stream;
     char *path;

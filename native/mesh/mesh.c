@@ -188,7 +188,8 @@ swarf_status swarf_mesh_write_colored(const swarf_mesh *mesh, const uint8_t *rgb
     swarf_file_writer writer;
     SWARF_TRY(swarf_file_begin(path, &writer));
     const swarf_status status = write(&triangles, rgb, writer.stream, progress);
-    if (status != SWARF_OK) {
+    const int full = status == SWARF_ERROR_IO && ferror(writer.stream); /* which closing the file tells best */
+    if (status != SWARF_OK && !full) {
         swarf_file_abandon(&writer);
         return status;
     }

@@ -187,7 +187,8 @@ swarf_status swarf_stl_write_records(const swarf_triangles *t, FILE *stream, con
 
 swarf_status swarf_stl_finish(FILE *stream, size_t triangles)
 {
-    if (fseek(stream, 0, SEEK_SET) != 0) return swarf_fail(SWARF_ERROR_IO, "mesh: cannot write: %s", strerror(errno));
+    if (fseek(stream, 0, SEEK_SET) != 0 && !ferror(stream)) /* that is told when the file is closed */
+        return swarf_fail(SWARF_ERROR_IO, "mesh: the count cannot be put where the file begins: %s", strerror(errno));
     return swarf_stl_write_header(triangles, stream);
 }
 

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Meshes of stocks: measures, pieces, sections, colours and the formats, read back by other means."""
+import contextlib
 import json
 import math
+import os
+import resource
 import struct
 import xml.etree.ElementTree as ElementTree
 import zipfile
@@ -11,7 +14,7 @@ import pytest
 import swarf
 from swarf.cli import main
 
-VOXEL = 0.2
+VOXEL, ERROR = 0.2, 0.02
 
 
 @pytest.fixture(scope="module", name="stock")
@@ -26,7 +29,7 @@ def fixture_stock():
 
 @pytest.fixture(scope="module", name="mesh")
 def fixture_mesh(stock):
-    return swarf.Mesh.from_stock(stock, 0.02)
+    return swarf.Mesh.from_stock(stock, ERROR)
 
 
 def test_contour_says_what_it_did(stock, mesh):
@@ -155,10 +158,62 @@ def test_empty_meshes_can_be_written(tmp_path):
         ElementTree.fromstring(archive.read("3D/3dmodel.model"))
 
 
-def test_disk_full_says_so(mesh):
-    for suffix in ("stl", "3mf", "glb"):
-        with pytest.raises(OSError):
-            mesh.write(f"/dev/full/part.{suffix}")
+@contextlib.contextmanager
+def small_disk(size):
+    """No file can be longer than ``size`` bytes: as on a disk that is full."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.mark.parametrize("name", ["part.stl", "part.ply", "part.obj", "part.3mf", "part.glb", "part.vdb", "streamed.stl"])
+def test_disk_full_says_so(stock, mesh, tmp_path, name):
+    path = tmp_path / name
+    path.write_text("before")
+
+    def write():
+        if name == "part.vdb":
+            stock.write(path)
+        elif name == "streamed.stl":
+            swarf.Mesh.stream(stock, path, memory_limit=1)
+        else:
+            mesh.write(path)
+
+    with small_disk(100), pytest.raises(OSError, match=f"{name}: cannot write: File too large"):
+        write()
+    assert path.read_text() == "before" and os.listdir(tmp_path) == [name]
+    write()
+    assert path.stat().st_size > 100 and os.listdir(tmp_path) == [name]
+
+
+def test_command_on_a_full_disk(stock, tmp_path, capsys):
+    stock.write(tmp_path / "stock.vdb")
+    for suffix in ("stl", "3mf"):
+        with small_disk(100):
+            assert main(["mesh", str(tmp_path / "stock.vdb"), "--output", str(tmp_path / f"part.{suffix}")]) == 2
+        told = capsys.readouterr().err.strip().splitlines()
+        assert len(told) == 1 and f"part.{suffix}: cannot write: File too large" in told[0]
+    assert os.listdir(tmp_path) == ["stock.vdb"]
+
+
+def test_stream(stock, tmp_path):
+    made = swarf.Mesh.stream(stock, tmp_path / "part.stl", ERROR)
+    bands = swarf.Mesh.stream(stock, tmp_path / "bands.stl", ERROR, memory_limit=1)
+    part, in_bands = (swarf.Mesh.read(tmp_path / name) for name in ("part.stl", "bands.stl"))
+    assert made.triangles == part.triangle_count and bands.triangles == in_bands.triangle_count
+    assert part.closed and in_bands.closed and in_bands.volume == pytest.approx(part.volume, rel=1e-4)
+    stock.write(tmp_path / "stock.vdb")
+    assert main(["mesh", str(tmp_path / "stock.vdb"), "--error", str(ERROR), "--output", str(tmp_path / "told.stl")]) == 0
+    assert (tmp_path / "told.stl").read_bytes() == (tmp_path / "part.stl").read_bytes()
+    with pytest.raises(ValueError, match="streamed to .stl only"):
+        swarf.Mesh.stream(stock, tmp_path / "part.ply")
+    with pytest.raises(ValueError, match="memory_limit: -1"):
+        swarf.Mesh.stream(stock, tmp_path / "part.stl", memory_limit=-1)
+    with pytest.raises(TypeError, match="surface"):
+        swarf.Mesh.stream(stock, tmp_path / "part.stl", surface=1)
 
 
 def test_command(stock, tmp_path, capsys):

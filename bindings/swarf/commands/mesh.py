@@ -13,7 +13,7 @@ from .. import _native, colours
 from ..console import DONE, FINDINGS, check_outputs
 from ..parts import PLANE_HELP, parse_plane, pieces, thinnest
 from ..progress import Bar
-from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES
+from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES, streams
 
 
 def add(subparsers: Any) -> None:
@@ -30,7 +30,7 @@ def add(subparsers: Any) -> None:
     command.add_argument("--budget", metavar="N", type=int, default=0,
                          help="no more triangles than N, if the error allows")
     command.add_argument("--output", metavar="FILE", action="append", default=[],
-                         help=f"write the mesh: {' '.join(MESH_SUFFIXES)} (repeatable)")
+                         help=f"write the mesh: {' '.join(MESH_SUFFIXES)} (repeatable); one that does not fit into memory only to .stl")
     command.add_argument("--split", action="store_true",
                          help="write every piece that hangs together to a file of its own: FILE-1, FILE-2 ...")
     command.add_argument("--split-at", metavar="PLANE", type=parse_plane, action="append", default=[],
@@ -70,16 +70,30 @@ def parts_of(mesh: _native.Mesh, arguments: argparse.Namespace) -> list[_native.
     return parts
 
 
-def read(arguments: argparse.Namespace, bar: Bar) -> _native.Mesh:
-    """The mesh in the input, or that of the stock in it."""
+def read(arguments: argparse.Namespace, bar: Bar) -> tuple[Any, float]:
+    """The mesh in the input, or the stock in it and what its mesh may be off."""
     if os.path.splitext(arguments.input)[1].lower() != ".vdb":
         if arguments.error or arguments.budget:
             raise ValueError(f"{arguments.input}: --error and --budget are for stocks (.vdb); a mesh is taken as it is")
-        return _native.Mesh.read(arguments.input)
+        return _native.Mesh.read(arguments.input), 0.0
     stock = _native.Stock.read(arguments.input, progress=lambda fraction: bar("read", fraction))
-    error = MESH_ERROR_VOXELS * stock.voxel if arguments.error is None else arguments.error
-    return _native.Mesh.from_stock(stock, error, budget=arguments.budget,
-                                   progress=lambda fraction: bar("mesh", fraction))
+    return stock, MESH_ERROR_VOXELS * stock.voxel if arguments.error is None else arguments.error
+
+
+def is_streamed(arguments: argparse.Namespace) -> bool:
+    """Whether a stock can go to its files without a mesh of the whole in memory."""
+    return streams(arguments.output) and not (arguments.split or arguments.split_at or arguments.thickness
+                                              or arguments.measure or arguments.budget)
+
+
+def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> None:
+    """The mesh, or its parts, to all files."""
+    several = arguments.split or bool(arguments.split_at)
+    for number, part in enumerate(parts_of(mesh, arguments), 1):
+        tints = colours.by_thickness(part) if arguments.thickness and part.triangle_count else None
+        for path in arguments.output:
+            part.write(numbered(path, number) if several else path, colors=tints,
+                       progress=lambda fraction: bar("write", fraction))
 
 
 def numbered(path: str, number: int) -> str:
@@ -106,17 +120,19 @@ def run(arguments: argparse.Namespace) -> int:
     _native.set_threads(arguments.threads)
     check_outputs(arguments.output, arguments.input)
     with Bar() as bar:
-        mesh = read(arguments, bar)
-        several = arguments.split or bool(arguments.split_at)
-        for number, part in enumerate(parts_of(mesh, arguments), 1):
-            tints = colours.by_thickness(part) if arguments.thickness and part.triangle_count else None
+        mesh, error = read(arguments, bar)
+        if isinstance(mesh, _native.Stock) and is_streamed(arguments):
             for path in arguments.output:
-                part.write(numbered(path, number) if several else path, colors=tints,
-                           progress=lambda fraction: bar("write", fraction))
+                made = _native.Mesh.stream(mesh, path, error, progress=lambda fraction: bar("mesh", fraction))
+        else:
+            if isinstance(mesh, _native.Stock):
+                mesh = _native.Mesh.from_stock(mesh, error, budget=arguments.budget,
+                                               progress=lambda fraction: bar("mesh", fraction))
+            write_parts(mesh, arguments, bar)
+            made = mesh.contour
     if arguments.measure:
         json.dump(measures(mesh, arguments.thickness), sys.stdout, indent=2, allow_nan=False)
         print()
-    made = mesh.contour
     if made is None:
         return DONE
     if made.intersections_left:
