@@ -207,7 +207,10 @@ def test_stream(stock, tmp_path):
     assert part.closed and in_bands.closed and in_bands.volume == pytest.approx(part.volume, rel=1e-4)
     stock.write(tmp_path / "stock.vdb")
     assert main(["mesh", str(tmp_path / "stock.vdb"), "--error", str(ERROR), "--output", str(tmp_path / "told.stl")]) == 0
-    assert (tmp_path / "told.stl").read_bytes() == (tmp_path / "part.stl").read_bytes()
+    stock.write(tmp_path / "stock.vdb")
+    assert main(["mesh", str(tmp_path / "stock.vdb"), "--error", str(ERROR), "--output", str(tmp_path / "told.stl")]) == 0
+    swarf.Mesh.from_stock(swarf.Stock.read(tmp_path / "stock.vdb"), ERROR).write(tmp_path / "whole.stl")
+    assert (tmp_path / "told.stl").read_bytes() == (tmp_path / "whole.stl").read_bytes()
     with pytest.raises(ValueError, match="streamed to .stl only"):
         swarf.Mesh.stream(stock, tmp_path / "part.ply")
     with pytest.raises(ValueError, match="memory_limit: -1"):
