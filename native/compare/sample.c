@@ -293,14 +293,12 @@ static swarf_status try_point(struct finder *f, size_t place, const double point
         within &= at[k] >= -1 && at[k] < (double)work->layout->count[k] * SWARF_NODE_DIM;
     }
     if (within) value = (double)swarf_probe_slope(&f->probe, at, slope);
-    if (work->marks) { /* of a triangle that crosses others it is not known here where it bounds the solid */
+    if (work->marks) {
         const int is_beside = fabs(value) <= work->least && dot(slope, normal) >= least_slope;
-        const int is_plain = work->design->state[place] == SOLID_PLAIN;
-        swarf_mark_slots(work->layout, at, is_beside && is_plain ? SLOT_MET : SLOT_OPEN, work->marks);
+        const int has_side = work->design->state[place] != SOLID_SLIVER;
+        swarf_mark_slots(work->layout, at, is_beside && has_side ? SLOT_MET : SLOT_OPEN, work->marks);
     }
     if (fabs(value) <= work->least || area == 0) return SWARF_OK;
-    if (work->design->state[place] == SOLID_CROSSING && !swarf_solid_bounds(work->design, place, point))
-        return SWARF_OK;
     swarf_sample sample = {
         .value = (float)-value, .area = (float)area, .triangle = work->design->source[place], .missing = 1};
     for (int k = 0; k < 3; k++) sample.xyz[k] = (float)point[k];
@@ -373,7 +371,7 @@ static swarf_status sample_triangles(void *context, size_t index)
     const size_t end = (index + 1) * TRIANGLES < count ? (index + 1) * TRIANGLES : count;
     struct finder finder = {.work = work, .probe = swarf_probe_begin(work->stock), .found = &work->parts[index]};
     for (size_t place = index * TRIANGLES; place < end; place++)
-        if (work->design->state[place] != SOLID_DROPPED) SWARF_TRY(sample_triangle(&finder, place, &work->area[index]));
+        SWARF_TRY(sample_triangle(&finder, place, &work->area[index]));
     return SWARF_OK;
 }
 

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Which triangles cross or touch others that share no vertex with them, and which lie inside the solid. */
+/* Which triangles cross or touch which others. Each group of the tree looks for what comes near its eight triangles;
+ * the pairs found become one list per triangle. */
+#include "solid/crossing.h"
+
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/status.h"
-#include "solid/solid.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Share of the gap by which the projections of triangles with a common corner may overlap. */
 static const double touching = 1e-3;
@@ -75,16 +79,29 @@ static int meet(const swarf_corners *first, const swarf_corners *second, double 
     return 1;
 }
 
+/* Two triangles that meet. */
+struct pair {
+    uint32_t place[2];
+};
+
+struct pair_list {
+    struct pair *pairs;
+    size_t count, room;
+};
+
 struct crossing_work {
-    swarf_solid *solid;
+    const swarf_solid *solid;
     double gap;
+    struct pair_list *found; /* per piece of work */
 };
 
 /* The places of one group, and what comes near them. */
 struct group_work {
     const struct crossing_work *work;
+    struct pair_list *found;
     size_t first, end;
     float lo[TREE_WIDTH][3], hi[TREE_WIDTH][3];
+    swarf_status status;
 };
 
 /* Number of corners that two triangles have in common. */
@@ -103,8 +120,8 @@ static int are_neighbours(const swarf_solid *solid, size_t place, size_t other)
 
 static void test_place(void *context, size_t place)
 {
-    const struct group_work *group = context;
-    swarf_solid *solid = group->work->solid;
+    struct group_work *group = context;
+    const swarf_solid *solid = group->work->solid;
     if (place < group->first) return; /* that one's group sees to it */
     float lo[3], hi[3];
     for (int k = 0; k < 3; k++) {
@@ -122,8 +139,11 @@ static void test_place(void *context, size_t place)
         const int share = common_corners(solid->vertex[place], solid->vertex[other]) > 0;
         if (share && are_neighbours(solid, place, other)) continue;
         if (!meet(&solid->corners[other], &solid->corners[place], group->work->gap, share)) continue;
-        __atomic_store_n(&solid->state[place], SOLID_CROSSING, __ATOMIC_RELAXED);
-        __atomic_store_n(&solid->state[other], SOLID_CROSSING, __ATOMIC_RELAXED);
+        struct pair_list *list = group->found;
+        if (group->status == SWARF_OK)
+            group->status =
+                swarf_array_reserve((void **)&list->pairs, &list->room, list->count + 1, sizeof *list->pairs);
+        if (group->status == SWARF_OK) list->pairs[list->count++] = (struct pair){{(uint32_t)other, (uint32_t)place}};
     }
 }
 
@@ -135,7 +155,7 @@ static swarf_status test_groups(void *context, size_t index)
     const struct crossing_work *work = context;
     const swarf_box_tree *tree = &work->solid->tree;
     for (size_t number = index * GROUPS; number < (index + 1) * GROUPS && number < tree->first[1]; number++) {
-        struct group_work group = {.work = work, .first = number * TREE_WIDTH};
+        struct group_work group = {.work = work, .found = &work->found[index], .first = number * TREE_WIDTH};
         group.end = group.first + TREE_WIDTH < tree->count ? group.first + TREE_WIDTH : tree->count;
         double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
         for (size_t i = 0; i < group.end - group.first; i++)
@@ -146,74 +166,56 @@ static swarf_status test_groups(void *context, size_t index)
                 hi[k] = fmax(hi[k], group.hi[i][k]);
             }
         swarf_box_tree_near(tree, lo, hi, work->gap, test_place, &group);
+        SWARF_TRY(group.status);
     }
     return SWARF_OK;
 }
 
-static uint32_t find_root(uint32_t *parent, uint32_t i)
+static swarf_status list_pairs(const struct crossing_work *work, size_t pieces, size_t count, swarf_crossings *out)
 {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
-/* Drop whole patches of plain triangles that lie inside: all of a patch do, or none. */
-static swarf_status drop_inner(swarf_solid *solid)
-{
-    const size_t count = solid->tree.count;
-    uint32_t *parent = malloc(count * sizeof *parent);
-    if (!parent) return swarf_fail(SWARF_ERROR_MEMORY, "solid: out of memory");
-    for (size_t i = 0; i < count; i++) parent[i] = (uint32_t)i;
+    size_t total = 0;
+    for (size_t i = 0; i < pieces; i++) total += 2 * work->found[i].count;
+    if (total == 0) return SWARF_OK;
+    out->first = calloc(count + 2, sizeof *out->first);
+    out->other = malloc(total * sizeof *out->other);
+    if (!out->first || !out->other) return swarf_fail(SWARF_ERROR_MEMORY, "solid: out of memory");
+    size_t *next = out->first + 1; /* first numbers of pairs one place on, then where the next goes, then its end */
+    for (size_t i = 0; i < pieces; i++)
+        for (size_t k = 0; k < 2 * work->found[i].count; k++) next[work->found[i].pairs[k / 2].place[k % 2] + 1]++;
     for (size_t i = 0; i < count; i++) {
-        if (solid->state[i] != SOLID_PLAIN) continue;
-        for (int k = 0; k < 3; k++) {
-            const uint32_t other = solid->across[i][k];
-            if (other >= i || solid->state[other] != SOLID_PLAIN) continue;
-            const uint32_t a = find_root(parent, (uint32_t)i), b = find_root(parent, other);
-            parent[a > b ? a : b] = a > b ? b : a;
-        }
+        out->count += next[i + 1] > 0;
+        next[i + 1] += next[i];
     }
-    size_t patches = 0;
-    for (size_t i = 0; i < count; i++) patches += solid->state[i] == SOLID_PLAIN && parent[i] == i;
-    /* a single patch bounds whatever there is */
-    if (patches > 1 || !solid->plain) {
-        uint8_t *inner = calloc(count, 1);
-        if (!inner) {
-            free(parent);
-            return swarf_fail(SWARF_ERROR_MEMORY, "solid: out of memory");
+    for (size_t i = 0; i < pieces; i++)
+        for (size_t k = 0; k < 2 * work->found[i].count; k++) {
+            const uint32_t *place = work->found[i].pairs[k / 2].place;
+            out->other[next[place[k % 2]]++] = place[1 - k % 2];
         }
-        for (size_t i = 0; i < count; i++) {
-            if (solid->state[i] != SOLID_PLAIN || parent[i] != i) continue;
-            double centre[3];
-            for (int k = 0; k < 3; k++)
-                centre[k] =
-                    ((double)solid->corners[i].xyz[0][k] + solid->corners[i].xyz[1][k] + solid->corners[i].xyz[2][k]) /
-                    3;
-            inner[i] = !swarf_solid_bounds(solid, i, centre);
-        }
-        for (size_t i = 0; i < count; i++)
-            if (solid->state[i] == SOLID_PLAIN && inner[find_root(parent, (uint32_t)i)])
-                solid->state[i] = SOLID_DROPPED;
-        free(inner);
-    }
-    free(parent);
     return SWARF_OK;
 }
 
-swarf_status swarf_solid_find_crossings(swarf_solid *solid, const swarf_progress *progress, double from, double to)
+swarf_status swarf_crossings_find(const swarf_solid *solid, const swarf_progress *progress, double from, double to,
+                                  swarf_crossings *out)
 {
-    struct crossing_work work = {solid, 0.25 * solid->tree.slack};
-    const size_t groups = solid->tree.first[1];
-    SWARF_TRY(swarf_parallel_for((groups + GROUPS - 1) / GROUPS, test_groups, &work, progress, from, to));
-    for (size_t i = 0; i < solid->tree.count; i++) solid->facts.crossing_triangles += solid->state[i] == SOLID_CROSSING;
-    solid->plain = solid->facts.crossing_triangles == 0;
-    SWARF_TRY(drop_inner(solid));
-    solid->facts.triangle_count = 0;
-    solid->plain = 1;
-    for (size_t i = 0; i < solid->tree.count; i++) {
-        solid->facts.triangle_count += solid->state[i] != SOLID_DROPPED;
-        if (solid->state[i] != SOLID_PLAIN) solid->plain = 0;
+    const size_t pieces = (solid->tree.first[1] + GROUPS - 1) / GROUPS;
+    swarf_crossings crossings = {.count = 0};
+    struct crossing_work work = {solid, SOLID_GAP * solid->tree.slack, calloc(pieces, sizeof *work.found)};
+    if (!work.found) return swarf_fail(SWARF_ERROR_MEMORY, "solid: out of memory");
+    swarf_status status = swarf_parallel_for(pieces, test_groups, &work, progress, from, to);
+    if (status == SWARF_OK) status = list_pairs(&work, pieces, solid->tree.count, &crossings);
+    for (size_t i = 0; i < pieces; i++) free(work.found[i].pairs);
+    free(work.found);
+    if (status != SWARF_OK) {
+        swarf_crossings_free(&crossings);
+        return status;
     }
-    if (solid->facts.triangle_count == 0)
-        return swarf_fail(SWARF_ERROR_GEOMETRY, "mesh: its triangles enclose nothing");
+    *out = crossings;
     return SWARF_OK;
+}
+
+void swarf_crossings_free(swarf_crossings *crossings)
+{
+    free(crossings->first);
+    free(crossings->other);
+    memset(crossings, 0, sizeof *crossings);
 }

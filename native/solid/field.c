@@ -94,7 +94,7 @@ static double least_distance(const candidate *c, const struct cube *cube)
 static void add_candidate(void *context, size_t place)
 {
     struct walker *w = context;
-    if (w->status != SWARF_OK || w->solid->state[place] == SOLID_DROPPED) return;
+    if (w->status != SWARF_OK) return;
     w->status = swarf_array_reserve((void **)&w->list, &w->room, w->count + 1, sizeof *w->list);
     if (w->status != SWARF_OK) return;
     candidate *c = &w->list[w->count];
@@ -265,25 +265,8 @@ static void fill_part(struct walker *w, const int32_t corner[3], const int32_t a
             }
 }
 
-/* Where triangles cross, which of them bound the solid differs from point to point. */
-static void fill_slowly(struct walker *w, const int32_t corner[3])
-{
-    const double reach = w->field->reach;
-    swarf_solid_hit hit;
-    for (int i = 0; i < FIELD_LEAF_SIZE; i++) {
-        const int32_t at[3] = {i >> 6, i >> 3 & 7, i & 7};
-        double point[3];
-        for (int k = 0; k < 3; k++) point[k] = w->field->origin[k] + w->field->voxel * (corner[k] + at[k]);
-        swarf_solid_find(w->solid, point, reach, &hit);
-        if (hit.place == SIZE_MAX)
-            w->values[i] = (float)(swarf_solid_inside(w->solid, point) ? -reach : reach);
-        else
-            w->values[i] = (float)clamp(hit.distance, reach);
-    }
-}
-
-/* Gather what comes within `bound` of a cube; 1 when triangles that cross others are among it. */
-static int gather(struct walker *w, const struct cube *cube, double bound)
+/* Gather what comes within `bound` of a cube. */
+static void gather(struct walker *w, const struct cube *cube, double bound)
 {
     double lo[3], hi[3];
     for (int k = 0; k < 3; k++) {
@@ -294,29 +277,22 @@ static int gather(struct walker *w, const struct cube *cube, double bound)
     w->cube = cube;
     w->bound = bound;
     swarf_box_tree_near(&w->solid->tree, lo, hi, bound, add_candidate, w);
-    int crossing = 0;
-    for (size_t i = 0; i < w->count; i++) crossing |= w->solid->state[w->list[i].place] != SOLID_PLAIN;
-    return crossing;
 }
 
 static void fill_leaf(struct walker *w, const int32_t corner[3], const struct cube *cube, size_t nearest, double away)
 {
     const int32_t start[3] = {0, 0, 0};
     const candidate *plane;
-    int crossing = gather(w, cube, flat_limit(w, cube, away) * (1 + 1e-9) + flatness * w->field->voxel);
+    gather(w, cube, flat_limit(w, cube, away) * (1 + 1e-9) + flatness * w->field->voxel);
     size_t number = 0;
     while (number < w->count && w->list[number].place != nearest) number++;
-    if (w->status == SWARF_OK && !crossing && number < w->count &&
+    if (w->status == SWARF_OK && number < w->count &&
         is_flat(w, w->list, w->count, cube, &w->list[number], away, &plane)) {
         fill_plane(w, start, FIELD_LEAF, cube, plane);
         return;
     }
-    if (!crossing) crossing = gather(w, cube, (away + cube->radius) * (1 + 1e-9));
-    if (w->status != SWARF_OK) return;
-    if (crossing)
-        fill_slowly(w, corner);
-    else
-        fill_part(w, corner, start, FIELD_LEAF, 0, w->count);
+    gather(w, cube, (away + cube->radius) * (1 + 1e-9));
+    if (w->status == SWARF_OK) fill_part(w, corner, start, FIELD_LEAF, 0, w->count);
 }
 
 /* `far`: no point of the cube is farther from the surface. */

@@ -143,7 +143,7 @@ static float square_doubtful(double square, double slack)
 }
 
 void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *corners, const double point[3],
-                            swarf_bounds_fn bounds, const void *context, swarf_nearest *nearest)
+                            swarf_nearest *nearest)
 {
     float at[3];
     double slack = tree->slack;
@@ -175,7 +175,7 @@ void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *cor
                 if (square[i] > limit || (square[i] >= doubtful && is_no_closer(group, i, point, nearest))) continue;
                 swarf_nearest here = {.place = now.group * TREE_WIDTH + (size_t)i};
                 here.square = swarf_corners_closest(&corners[here.place], point, here.point, &here.feature);
-                if (!(here.square < nearest->square) || (bounds && !bounds(context, here.place, here.point))) continue;
+                if (!(here.square < nearest->square)) continue;
                 *nearest = here;
                 limit = square_limit(here.square, slack);
                 doubtful = square_doubtful(here.square, slack);

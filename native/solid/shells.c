@@ -151,8 +151,9 @@ static face_key *sorted_faces(const swarf_shells *s, size_t *starts)
     return keys;
 }
 
-/* Of triangles on the same three vertices keep one of the side that is in the majority, or none. */
-static swarf_status drop_duplicates(swarf_shells *s, size_t *starts)
+/* Of triangles on the same three vertices keep those of the side that is in the majority, as many as it is ahead: one
+ * of them, or with `copies` all. *doubled is how many were one too many. */
+static swarf_status drop_duplicates(swarf_shells *s, int copies, size_t *starts, size_t *doubled)
 {
     const size_t count = s->triangle_count;
     unsigned char *keep = calloc(count + 1, 1);
@@ -165,10 +166,13 @@ static swarf_status drop_duplicates(swarf_shells *s, size_t *starts)
         ptrdiff_t balance = 0;
         for (j = i; j < count && memcmp(keys[j].v, keys[i].v, sizeof keys[i].v) == 0; j++)
             balance += keys[j].even ? 1 : -1;
-        for (size_t k = i; k < j && balance != 0; k++)
+        const ptrdiff_t ahead = balance < 0 ? -balance : balance;
+        ptrdiff_t wanted = copies || ahead == 0 ? ahead : 1;
+        *doubled += (size_t)(ahead - wanted);
+        for (size_t k = i; k < j && wanted > 0; k++)
             if (keys[k].even == (balance > 0)) {
                 keep[keys[k].triangle] = 1;
-                break;
+                wanted--;
             }
     }
     s->triangle_count = 0;
@@ -508,25 +512,42 @@ static swarf_status check_and_split(swarf_shells *s, double hole_share, size_t *
     return status;
 }
 
-swarf_status swarf_shells_create(const swarf_triangles *triangles, double hole_share, swarf_shells *out)
+static swarf_status make(const swarf_triangles *triangles, double hole_share, int copies, size_t *doubled,
+                         swarf_shells *out)
 {
-    SWARF_TRY(check_input(triangles));
     swarf_shells shells;
     memset(&shells, 0, sizeof shells);
     size_t *starts = NULL; /* of buckets */
     swarf_status status = copy_welded(triangles, &shells);
     if (status == SWARF_OK && !(starts = malloc((shells.vertex_count + 2) * sizeof *starts)))
         status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
-    if (status == SWARF_OK) status = drop_duplicates(&shells, starts);
+    if (status == SWARF_OK) status = drop_duplicates(&shells, copies, starts, doubled);
     if (status == SWARF_OK) measure(&shells);
     if (status == SWARF_OK) status = check_and_split(&shells, hole_share, starts);
     free(starts);
-    if (status != SWARF_OK) {
+    if (status != SWARF_OK)
         swarf_shells_free(&shells);
-        return status;
+    else
+        *out = shells;
+    return status;
+}
+
+swarf_status swarf_shells_create(const swarf_triangles *triangles, double hole_share, swarf_shells *out)
+{
+    SWARF_TRY(check_input(triangles));
+    swarf_shells shells, other;
+    size_t doubled = 0, none = 0;
+    const swarf_status status = make(triangles, hole_share, 0, &doubled, &shells);
+    /* A triangle given twice by mistake is one too many; where two shells have it in common both need it. */
+    const int open =
+        status == SWARF_ERROR_GEOMETRY || (status == SWARF_OK && (shells.open_edges || shells.turned_edges));
+    if (doubled && open && make(triangles, 0, 1, &none, &other) == SWARF_OK) {
+        if (status == SWARF_OK) swarf_shells_free(&shells);
+        *out = other;
+        return SWARF_OK;
     }
-    *out = shells;
-    return SWARF_OK;
+    if (status == SWARF_OK) *out = shells;
+    return status;
 }
 
 void swarf_shells_free(swarf_shells *shells)

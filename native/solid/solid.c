@@ -145,6 +145,8 @@ static swarf_status take_shells(swarf_solid *solid, const swarf_shells *shells, 
             }
             solid->source[place] = shells->source[i];
         }
+        solid->all = solid->tree;
+        solid->all_corners = solid->corners;
     }
     free(places);
     return status;
@@ -167,7 +169,7 @@ static swarf_status create(swarf_solid *solid, const swarf_triangles *triangles,
     swarf_status status = take_shells(solid, &shells, progress, from + part, from + 2 * part);
     swarf_shells_free(&shells);
     if (status == SWARF_OK) status = find_normals(solid, progress, from + 2 * part, from + 3 * part);
-    if (status == SWARF_OK) status = swarf_solid_find_crossings(solid, progress, from + 3 * part, to);
+    if (status == SWARF_OK) status = swarf_solid_find_bounds(solid, progress, from + 3 * part, to);
     solid->facts.dropped_triangles = triangles->triangle_count - solid->facts.triangle_count;
     return status;
 }
@@ -202,6 +204,10 @@ swarf_solid *swarf_solid_retain(swarf_solid *solid)
 void swarf_solid_release(swarf_solid *solid)
 {
     if (!solid || __atomic_sub_fetch(&solid->references, 1, __ATOMIC_ACQ_REL) > 0) return;
+    if (solid->all_corners != solid->corners) {
+        swarf_box_tree_free(&solid->all);
+        free(solid->all_corners);
+    }
     swarf_box_tree_free(&solid->tree);
     free(solid->corners);
     free(solid->source);
@@ -219,7 +225,7 @@ swarf_solid_facts swarf_solid_get_facts(const swarf_solid *solid)
 
 int swarf_solid_inside(const swarf_solid *solid, const double point[3])
 {
-    return swarf_box_tree_winding(&solid->tree, solid->corners, point) > 0.5;
+    return swarf_box_tree_winding(&solid->all, solid->all_corners, point) > 0.5;
 }
 
 /* Cosine between the pseudonormal of a feature and the way from it to the point; 0 where nothing can be told. */
@@ -229,7 +235,8 @@ static double feature_cosine(const swarf_solid *solid, const double point[3], co
     const double way[3] = {point[0] - nearest->point[0], point[1] - nearest->point[1], point[2] - nearest->point[2]};
     const double away = sqrt(dot(way, way));
     double normal[3];
-    if (solid->open || solid->state[place] != SOLID_PLAIN) return 0;
+    if (solid->open || solid->state[place] == SOLID_SLIVER) return 0;
+    if (solid->state[place] == SOLID_PIECE && nearest->feature != 0) return 0;
     if (nearest->feature >= 1 && nearest->feature <= 3) {
         const float *own = solid->normal[solid->vertex[place][nearest->feature - 1]];
         for (int k = 0; k < 3; k++) normal[k] = own[k];
@@ -257,38 +264,10 @@ double swarf_solid_sign(const swarf_solid *solid, const double point[3], const s
     return swarf_solid_inside(solid, point) ? -1 : 1;
 }
 
-int swarf_solid_bounds(const swarf_solid *solid, size_t place, const double point[3])
-{
-    const swarf_corners *t = &solid->corners[place];
-    double normal[3], inwards[3], side[2][3];
-    if (!unit_normal(t, normal)) return 0;
-    /* On an edge the neighbour would lie just where the test is made: go a little way into the triangle. */
-    const double step = 4 * solid->tree.slack;
-    for (int k = 0; k < 3; k++) inwards[k] = ((double)t->xyz[0][k] + t->xyz[1][k] + t->xyz[2][k]) / 3 - point[k];
-    const double room = sqrt(dot(inwards, inwards)), part = room > 2 * step ? 2 * step / room : 1;
-    for (int k = 0; k < 3; k++) {
-        side[0][k] = point[k] + part * inwards[k] + step * normal[k];
-        side[1][k] = point[k] + part * inwards[k] - step * normal[k];
-    }
-    return swarf_solid_inside(solid, side[0]) != swarf_solid_inside(solid, side[1]);
-}
-
-static int counts(const void *context, size_t place, const double point[3])
-{
-    const swarf_solid *solid = context;
-    if (solid->state[place] == SOLID_PLAIN) return 1;
-    return solid->state[place] == SOLID_CROSSING && swarf_solid_bounds(solid, place, point);
-}
-
 void swarf_solid_nearest(const swarf_solid *solid, const double point[3], double reach, swarf_nearest *out)
 {
     *out = (swarf_nearest){.square = reach * reach, .place = SIZE_MAX};
-    swarf_box_tree_nearest(&solid->tree, solid->corners, point, solid->plain ? NULL : counts, solid, out);
-    if (out->place != SIZE_MAX || reach < INFINITY) return;
-    *out = (swarf_nearest){
-        .square = INFINITY,
-        .place = SIZE_MAX}; /* where triangles cross just so that each seems to be inside: any of them will do */
-    swarf_box_tree_nearest(&solid->tree, solid->corners, point, NULL, solid, out);
+    swarf_box_tree_nearest(&solid->tree, solid->corners, point, out);
 }
 
 static void take_hit(const swarf_solid *solid, const double point[3], const swarf_nearest *nearest,
@@ -312,11 +291,9 @@ void swarf_solid_find_next(const swarf_solid *solid, const double point[3], swar
     if (hit->place != SIZE_MAX) { /* no other triangle farther away than the last one is worth a look */
         swarf_nearest nearest = {.place = hit->place};
         nearest.square = swarf_corners_closest(&solid->corners[hit->place], point, nearest.point, &nearest.feature);
-        if (solid->plain || counts(solid, hit->place, nearest.point)) {
-            swarf_box_tree_nearest(&solid->tree, solid->corners, point, solid->plain ? NULL : counts, solid, &nearest);
-            take_hit(solid, point, &nearest, hit);
-            return;
-        }
+        swarf_box_tree_nearest(&solid->tree, solid->corners, point, &nearest);
+        take_hit(solid, point, &nearest, hit);
+        return;
     }
     swarf_solid_find(solid, point, INFINITY, hit);
 }

@@ -10,29 +10,32 @@
 extern "C" {
 #endif
 
-/** What is known of a triangle. */
+/** What is known of a triangle that bounds the solid. */
 enum {
-    SOLID_PLAIN = 0,
-    SOLID_CROSSING = 1, /* crosses or touches others: part of it may lie inside; its normal tells no sign */
-    SOLID_DROPPED = 2   /* inside: bounds nothing */
+    SOLID_PLAIN = 0, /* as it was given */
+    SOLID_PIECE =
+        1, /* cut from one that crosses or touches others: its normal tells a side, its edges and corners none */
+    SOLID_SLIVER = 2 /* a piece too thin for its normal to tell anything */
 };
 
 struct swarf_solid {
     int references; /* only by atomic operations */
     swarf_solid_facts facts;
     size_t source_count; /* of the triangles given */
+    /* the triangles that bound it, by place in their tree */
     swarf_box_tree tree;
-    /* by place in the tree */
     swarf_corners *corners;
     uint32_t *source;      /* number in the triangles given */
-    uint32_t (*vertex)[3]; /* numbers of the corners */
+    uint32_t (*vertex)[3]; /* numbers of the corners; of pieces those of the triangle they are cut from */
     uint32_t (*across)[3]; /* place beyond edge k, UINT32_MAX where there is not just one */
     uint8_t *state;
-    int plain; /* all triangles are */
-    int open;  /* there are holes: normals tell no sign */
+    int open; /* there are holes: normals tell no sign */
     /* by vertex */
     size_t vertex_count;
     float (*normal)[3]; /* weighted by the angles of the triangles there; zero where it tells no sign */
+    /* all triangles, for the winding number: the same memory as above where all of them bound the solid */
+    swarf_box_tree all;
+    swarf_corners *all_corners;
 };
 
 /** swarf_solid_create() with holes of at most this share of the area (0: none), as a part of a longer work. */
@@ -58,9 +61,6 @@ int swarf_solid_inside(const swarf_solid *solid, const double point[3]);
 void swarf_solid_nearest(const swarf_solid *solid, const double point[3], double reach, swarf_nearest *out);
 /** Sign (+1 outside, -1 inside) of a point whose closest feature this is; asks the winding number where need be. */
 double swarf_solid_sign(const swarf_solid *solid, const double point[3], const swarf_nearest *nearest);
-/** Whether a triangle bounds the solid at one of its points: what lies just before and behind differs. */
-int swarf_solid_bounds(const swarf_solid *solid, size_t place, const double point[3]);
-
 /** Twice the area times the unit normal of a triangle. */
 static inline void swarf_corners_normal(const swarf_corners *t, double out[3])
 {
@@ -72,8 +72,8 @@ static inline void swarf_corners_normal(const swarf_corners *t, double out[3])
     for (int k = 0; k < 3; k++) out[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
 }
 
-/** Mark the triangles that cross or touch others, and those inside (crossing.c). */
-swarf_status swarf_solid_find_crossings(swarf_solid *solid, const swarf_progress *progress, double from, double to);
+/** Leave only what bounds the solid in its tree: cut what crosses or touches, drop what lies inside (bounds.c). */
+swarf_status swarf_solid_find_bounds(swarf_solid *solid, const swarf_progress *progress, double from, double to);
 
 #ifdef __cplusplus
 }

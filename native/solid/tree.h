@@ -58,14 +58,10 @@ typedef struct swarf_nearest {
     int feature;  /**< 0 face, 1 .. 3 corner 0 .. 2, 4 .. 6 edge from corner 0 .. 2 to the next */
 } swarf_nearest;
 
-/** Whether a triangle counts at the point of it that is closest. */
-typedef int (*swarf_bounds_fn)(const void *context, size_t place, const double point[3]);
-
 /** The closest triangle (the first found of equally close ones), if it is closer than *nearest is before: a triangle
- *  already known, or place SIZE_MAX and the square of how far to look. `bounds` (may be NULL) is asked of each that
- *  would be closer than all before. */
+ *  already known, or place SIZE_MAX and the square of how far to look. */
 void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *corners, const double point[3],
-                            swarf_bounds_fn bounds, const void *context, swarf_nearest *nearest);
+                            swarf_nearest *nearest);
 
 /** Closest point of one triangle, its feature, and the square of its distance. */
 double swarf_corners_closest(const swarf_corners *triangle, const double point[3], double closest[3], int *feature);

@@ -320,6 +320,50 @@ static void check_fixtures_and_design(double voxel)
     shape_free(&part);
 }
 
+/* A step clamp of three boxes that overlap and lie flush: round its foot, over its steps and along its flanks the tool
+ * clears it by a fifth of a voxel; then it goes 0.6 mm into the second step. */
+static void check_step_clamp(double voxel)
+{
+    static const double boxes[3][2][3] = {{{20.3, 20.1, 1}, {60.3, 40.1, 11.2}},
+                                          {{20.3, 20.1, 3}, {45.3, 40.1, 21.2}},
+                                          {{20.3, 20.1, 1}, {30.3, 40.1, 31.2}}};
+    static const double side = 3, clear = 0.2;
+    shape clamp = {0};
+    for (int i = 0; i < 3; i++) shape_box(&clamp, boxes[i][0], boxes[i][1]);
+    const swarf_triangles triangles = shape_view(&clamp);
+    swarf_solid *solid = NULL;
+    CHECK_OK(swarf_solid_create(&triangles, NULL, &solid));
+    const swarf_solid *const fixtures[1] = {solid};
+    for (int deep = 0; deep < 2; deep++) {
+        const double away = clear * voxel, z = deep ? 20.6 : 21.2 + away;
+        job j = begin("flat:d=6,l=40", voxel);
+        j.options.fixtures = fixtures;
+        j.options.fixture_count = 1;
+        line(&j, SWARF_MOVE_RAPID, 20.3 - side - away, 20.1 - side - away, 50, 1);
+        line(&j, SWARF_MOVE_RAPID, 20.3 - side - away, 20.1 - side - away, 1, 2);
+        line(&j, SWARF_MOVE_RAPID, 60.3 + side + away, 20.1 - side - away, 1, 3);
+        line(&j, SWARF_MOVE_RAPID, 60.3 + side + away, 40.1 + side + away, 1, 4);
+        line(&j, SWARF_MOVE_RAPID, 20.3 - side - away, 40.1 + side + away, 1, 5);
+        line(&j, SWARF_MOVE_RAPID, 20.3 - side - away, 30, 1, 6);
+        line(&j, SWARF_MOVE_RAPID, 20.3 - side - away, 30, 31.2 + away, 7);
+        line(&j, SWARF_MOVE_RAPID, 30.3 + side + away, 30, 31.2 + away, 8);
+        line(&j, SWARF_MOVE_RAPID, 30.3 + side + away, 30, z, 9);
+        line(&j, SWARF_MOVE_RAPID, 45.3 + side + away, 30, 21.2 + away, 10);
+        line(&j, SWARF_MOVE_RAPID, 45.3 + side + away, 30, 11.2 + away, 11);
+        line(&j, SWARF_MOVE_RAPID, 70, 30, 11.2 + away, 12);
+        run(&j);
+        if (!deep && !CHECK(j.count == 0)) print(&j);
+        if (deep && CHECK(j.count > 0)) {
+            CHECK(j.findings[0].line == 9 && j.findings[0].kind == SWARF_CHECK_FIXTURE);
+            CHECK_NEAR(j.findings[0].tip[2], 21.2, 0.1 * voxel + 0.05);
+            CHECK_NEAR(j.findings[0].depth_mm, 0.6, 0.1 * voxel + 0.05);
+        }
+        end(&j);
+    }
+    swarf_solid_release(solid);
+    shape_free(&clamp);
+}
+
 static void check_words(void)
 {
     job j = begin("flat:d=6,l=10", 0.5);
@@ -407,6 +451,7 @@ int main(void)
         check_near(voxels[i]);
         check_depth(voxels[i]);
         check_fixtures_and_design(voxels[i]);
+        check_step_clamp(voxels[i]);
     }
     check_words();
     check_stock();
