@@ -204,6 +204,12 @@ extern PyType_Spec surface_spec;
 /** A Surface that takes over a handle (NULL with an exception: gives up the rest) and a reference to its program, whose
  *  `exports` were raised; `before` may be NULL. */
 PyObject *surface_wrap(PyTypeObject *type, swarf_surface *handle, program_object *program, PyObject *before);
+/** What makes the handle of a Surface, of a first stock or of a surface before. */
+typedef swarf_status surface_maker(const void *context, const swarf_program *program, const swarf_tool *tools,
+                                   size_t tool_count, const swarf_progress *progress, swarf_surface **out);
+/** A Surface of a Program and a dict of tools. */
+PyObject *surface_make(PyTypeObject *type, PyObject *program, PyObject *tools, PyObject *progress, PyObject *before,
+                       surface_maker *make, const void *context);
 
 /* ---- placement.c: methods of Stock, Surface and Mesh ---- */
 

@@ -83,32 +83,30 @@ const char surface_next_doc[] =
     "``placement``, is\n"
     "the first shape of ``program``. Nothing is lost.";
 
+typedef struct next_context {
+    const swarf_surface *before;
+    size_t moves;
+    swarf_placement placement;
+} next_context;
+
+static swarf_status make_next(const void *context, const swarf_program *program, const swarf_tool *tools, size_t count,
+                              const swarf_progress *progress, swarf_surface **out)
+{
+    const next_context *c = context;
+    return swarf_surface_create_next(c->before, c->moves, &c->placement, program, tools, count, progress, out);
+}
+
 PyObject *surface_next(PyObject *self, PyObject *args, PyObject *keywords)
 {
     static char *names[] = {"placement", "program", "tools", "moves", "progress", NULL};
     module_state *state = state_of(self);
-    PyObject *given, *program, *dict, *moves = Py_None, *progress = NULL;
-    swarf_placement placement;
-    const swarf_surface *before;
-    size_t count;
-    swarf_tool *tools;
-    size_t tool_count;
+    PyObject *given, *program, *tools, *moves = Py_None, *progress = NULL;
+    next_context c;
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO!O!|$OO:next", names, &given, state->program, &program,
-                                     &PyDict_Type, &dict, &moves, &progress) ||
-        placement_read(state, given, &placement) || surface_argument(state, self, moves, &before, &count) ||
-        tools_read(state, dict, &tools, &tool_count))
+                                     &PyDict_Type, &tools, &moves, &progress) ||
+        placement_read(state, given, &c.placement) || surface_argument(state, self, moves, &c.before, &c.moves))
         return NULL;
-    program_object *held = (program_object *)Py_NewRef(program);
-    held->exports++; /* its moves must not change while the surface shows them */
-    swarf_surface *handle = NULL;
-    native_call call;
-    int failed = call_begin(&call, progress);
-    if (!failed)
-        failed = call_end(&call, state,
-                          swarf_surface_create_next(before, count, &placement, held->handle, tools, tool_count,
-                                                    &call.progress, &handle));
-    tools_free(tools, tool_count);
-    return surface_wrap(Py_TYPE(self), failed ? NULL : handle, held, self);
+    return surface_make(Py_TYPE(self), program, tools, progress, self, make_next, &c);
 }
 
 const char mesh_placed_doc[] =

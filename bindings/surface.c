@@ -17,28 +17,38 @@ PyObject *surface_wrap(PyTypeObject *type, swarf_surface *handle, program_object
     return (PyObject *)self;
 }
 
-static PyObject *surface_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
+PyObject *surface_make(PyTypeObject *type, PyObject *program, PyObject *tools, PyObject *progress, PyObject *before,
+                       surface_maker *make, const void *context)
 {
-    static char *names[] = {"first", "program", "tools", "progress", NULL};
     module_state *state = state_of_type(type);
-    PyObject *first, *program, *dict, *progress = NULL;
-    swarf_tool *tools;
-    size_t tool_count;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!O!|$O:Surface", names, state->stock, &first, state->program,
-                                     &program, &PyDict_Type, &dict, &progress) ||
-        tools_read(state, dict, &tools, &tool_count))
-        return NULL;
+    swarf_tool *table;
+    size_t count;
+    if (tools_read(state, tools, &table, &count)) return NULL;
     program_object *held = (program_object *)Py_NewRef(program);
     held->exports++; /* its moves must not change while the surface shows them */
     swarf_surface *handle = NULL;
     native_call call;
     int failed = call_begin(&call, progress);
-    if (!failed)
-        failed = call_end(&call, state,
-                          swarf_surface_create(((stock_object *)first)->handle, held->handle, tools, tool_count,
-                                               &call.progress, &handle));
-    tools_free(tools, tool_count);
-    return surface_wrap(type, failed ? NULL : handle, held, NULL);
+    if (!failed) failed = call_end(&call, state, make(context, held->handle, table, count, &call.progress, &handle));
+    tools_free(table, count);
+    return surface_wrap(type, failed ? NULL : handle, held, before);
+}
+
+static swarf_status make_first(const void *stock, const swarf_program *program, const swarf_tool *tools, size_t count,
+                               const swarf_progress *progress, swarf_surface **out)
+{
+    return swarf_surface_create(((const stock_object *)stock)->handle, program, tools, count, progress, out);
+}
+
+static PyObject *surface_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"first", "program", "tools", "progress", NULL};
+    const module_state *state = state_of_type(type);
+    PyObject *first, *program, *tools, *progress = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!O!|$O:Surface", names, state->stock, &first, state->program,
+                                     &program, &PyDict_Type, &tools, &progress))
+        return NULL;
+    return surface_make(type, program, tools, progress, NULL, make_first, first);
 }
 
 static void surface_dealloc(PyObject *object)

@@ -211,13 +211,18 @@ def main():
     print("\nwritten:", path)
 
 
-if __name__ in ("make_job", "__main__") and not os.environ.get("SWARF_EXAMPLE_IMPORT"):
+def run(work):
+    """Do the work of a script that freecadcmd runs, and end the process as it came out."""
     status = 1
     try:
-        main()
+        work()
         status = 0
     except BaseException:  # left to freecadcmd, it would run the file a second time, and exit with 0
         traceback.print_exc()
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)  # freecadcmd would go on to wait for input
+
+
+if __name__ in ("make_job", "__main__") and not os.environ.get("SWARF_EXAMPLE_IMPORT"):
+    run(main)

@@ -9,7 +9,6 @@ when the part came out as designed. $SWARF_EXAMPLE_VOXEL: voxel size, mm.
 
 import os
 import sys
-import traceback
 
 import FreeCAD
 import Part
@@ -128,12 +127,4 @@ def main():
 
 
 if __name__ in ("make_two_sided", "__main__"):
-    status = 1
-    try:
-        main()
-        status = 0
-    except BaseException:  # left to freecadcmd, it would run the file a second time, and exit with 0
-        traceback.print_exc()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(status)  # freecadcmd would go on to wait for input
+    make_job.run(main)

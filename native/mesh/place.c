@@ -11,8 +11,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Vertices are left out up to this part of a voxel: as much as the mesh itself is off, and far fewer triangles. */
-static const double mesh_error = 0.01;
+/* Vertices are left out up to this part of a voxel: as much as the mesh itself is off, and far fewer triangles. The
+ * field alone does not know edges to more than half a voxel, so that it may cost faces a little more. */
+static const double mesh_error = 0.01, field_error = 0.04;
 
 swarf_place_options swarf_place_options_default(void)
 {
@@ -82,7 +83,7 @@ static swarf_status place_by_mesh(swarf_stock *stock, const swarf_placement *pla
     const swarf_progress contouring = {report_share, &first}, filling = {report_share, &second},
                          moving = {report_share, &third};
     swarf_contour_options wanted = swarf_contour_options_default();
-    wanted.error_mm = mesh_error * fmin(voxel, swarf_stock_voxel(stock));
+    wanted.error_mm = (options->surface ? mesh_error : field_error) * fmin(voxel, swarf_stock_voxel(stock));
     wanted.surface = options->surface;
     wanted.moves = options->moves;
     swarf_mesh *mesh;

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Meshes of stocks: measures, pieces, sections, colours and the formats, read back by other means."""
-import contextlib
 import json
 import math
-import os
-import resource
 import struct
 import xml.etree.ElementTree as ElementTree
 import zipfile
@@ -156,47 +153,6 @@ def test_empty_meshes_can_be_written(tmp_path):
         empty.write(tmp_path / f"empty.{suffix}")
     with zipfile.ZipFile(tmp_path / "empty.3mf") as archive:
         ElementTree.fromstring(archive.read("3D/3dmodel.model"))
-
-
-@contextlib.contextmanager
-def small_disk(size):
-    """No file can be longer than ``size`` bytes: as on a disk that is full."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-
-
-@pytest.mark.parametrize("name", ["part.stl", "part.ply", "part.obj", "part.3mf", "part.glb", "part.vdb", "streamed.stl"])
-def test_disk_full_says_so(stock, mesh, tmp_path, name):
-    path = tmp_path / name
-    path.write_text("before")
-
-    def write():
-        if name == "part.vdb":
-            stock.write(path)
-        elif name == "streamed.stl":
-            swarf.Mesh.stream(stock, path, memory_limit=1)
-        else:
-            mesh.write(path)
-
-    with small_disk(100), pytest.raises(OSError, match=f"{name}: cannot write: File too large"):
-        write()
-    assert path.read_text() == "before" and os.listdir(tmp_path) == [name]
-    write()
-    assert path.stat().st_size > 100 and os.listdir(tmp_path) == [name]
-
-
-def test_command_on_a_full_disk(stock, tmp_path, capsys):
-    stock.write(tmp_path / "stock.vdb")
-    for suffix in ("stl", "3mf"):
-        with small_disk(100):
-            assert main(["mesh", str(tmp_path / "stock.vdb"), "--output", str(tmp_path / f"part.{suffix}")]) == 2
-        told = capsys.readouterr().err.strip().splitlines()
-        assert len(told) == 1 and f"part.{suffix}: cannot write: File too large" in told[0]
-    assert os.listdir(tmp_path) == ["stock.vdb"]
 
 
 def test_stream(stock, tmp_path):
