@@ -72,14 +72,19 @@ static PyObject *picture_write(PyObject *self, PyObject *path_object)
 
 static PyObject *picture_show_deviation(PyObject *self, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"design", "tolerance", "allowance", "progress", NULL};
+    static char *names[] = {"other", "tolerance", "allowance", "progress", NULL};
     module_state *state = state_of(self);
     picture_object *picture = (picture_object *)self;
-    PyObject *design, *progress = NULL;
+    PyObject *other, *progress = NULL;
     double tolerance, allowance = 0;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!d|$dO:show_deviation", names, state->solid, &design, &tolerance,
-                                     &allowance, &progress))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "Od|$dO:show_deviation", names, &other, &tolerance, &allowance,
+                                     &progress))
         return NULL;
+    const int is_design = PyObject_TypeCheck(other, state->solid);
+    if (!is_design && !PyObject_TypeCheck(other, state->stock)) {
+        PyErr_SetString(PyExc_TypeError, "show_deviation: needs the Solid of a design or a Stock");
+        return NULL;
+    }
     if (!picture->bytes[RGBA] || !picture->bytes[POSITION] || !picture->bytes[SEEN]) {
         PyErr_SetString(PyExc_ValueError, "picture: made without 'rgba', 'position' and 'seen'");
         return NULL;
@@ -92,9 +97,12 @@ static PyObject *picture_show_deviation(PyObject *self, PyObject *args, PyObject
     native_call call;
     if (values && rgba && !call_begin(&call, progress)) {
         double *value = (double *)(void *)PyBytes_AsString(values);
-        swarf_status status = swarf_deviation_pixels(
-            ((solid_object *)design)->handle, (const double *)(const void *)PyBytes_AsString(picture->bytes[POSITION]),
-            (const uint8_t *)PyBytes_AsString(picture->bytes[SEEN]), count, allowance, &call.progress, value);
+        const double *position = (const double *)(const void *)PyBytes_AsString(picture->bytes[POSITION]);
+        const uint8_t *seen = (const uint8_t *)PyBytes_AsString(picture->bytes[SEEN]);
+        swarf_status status = is_design ? swarf_deviation_pixels(((solid_object *)other)->handle, position, seen, count,
+                                                                 allowance, &call.progress, value)
+                                        : swarf_deviation_design_pixels(((stock_object *)other)->handle, position, seen,
+                                                                        count, allowance, value);
         if (!status) status = swarf_deviation_colours(value, count, tolerance, (uint8_t *)PyBytes_AsString(rgba));
         if (!call_end(&call, state, status))
             result = buffer_view(state, values, value, "d", sizeof *value, (size_t)picture->height,
@@ -111,9 +119,10 @@ static PyObject *picture_show_deviation(PyObject *self, PyObject *args, PyObject
 
 static PyMethodDef picture_methods[] = {
     {"show_deviation", WITH_KEYWORDS(picture_show_deviation), METH_VARARGS | METH_KEYWORDS,
-     "show_deviation($self, design, tolerance, *, allowance=0.0, progress=None)\n--\n\n"
+     "show_deviation($self, other, tolerance, *, allowance=0.0, progress=None)\n--\n\n"
      "Tint what shows the stock by its deviation from a design Solid, as deviation_colours() does -> the deviations\n"
-     "(mm, less what is meant to be left), a read-only (height, width) float64 view, NaN elsewhere. Needs the buffers\n"
+     "(mm, less what is meant to be left), a read-only (height, width) float64 view, NaN elsewhere. Of a picture of\n"
+     "the design, by that of a Stock from it: to 0.01 voxel on faces, +-inf beyond three voxels. Needs the buffers\n"
      "rgba, position and seen; ValueError without them. rgba is a new view, which write() writes."},
     {"write", picture_write, METH_O, "write($self, path, /)\n--\n\nWrite the colours as PNG. OSError."},
     {NULL, NULL, 0, NULL},

@@ -413,10 +413,11 @@ class Picture:
     """A picture of a scene. Its views are read-only; those that were not asked for are None."""
 
     def show_deviation(
-        self, design: Solid, tolerance: float, *, allowance: float = 0.0, progress: Progress = None
+        self, other: Union[Solid, Stock], tolerance: float, *, allowance: float = 0.0, progress: Progress = None
     ) -> memoryview:
         """Tint what shows the stock by its deviation from a design Solid, as deviation_colours() does -> the deviations
-        (mm, less what is meant to be left), a read-only (height, width) float64 view, NaN elsewhere. Needs the buffers
+        (mm, less what is meant to be left), a read-only (height, width) float64 view, NaN elsewhere. Of a picture of
+        the design, by that of a Stock from it: to 0.01 voxel on faces, +-inf beyond three voxels. Needs the buffers
         rgba, position and seen; ValueError without them. rgba is a new view, which write() writes."""
     def write(self, path: Path, /) -> None:
         """Write the colours as PNG. OSError."""

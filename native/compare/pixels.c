@@ -32,3 +32,31 @@ swarf_status swarf_deviation_pixels(const swarf_solid *design, const double *pos
     free(array);
     return status;
 }
+
+swarf_status swarf_deviation_design_pixels(swarf_stock *stock, const double *position, const uint8_t *seen,
+                                           size_t count, double allowance, double *value)
+{
+    SWARF_REQUIRE(stock && ((position && seen && value) || count == 0), "pixels: stock or buffers missing");
+    SWARF_REQUIRE(isfinite(allowance), "pixels: an allowance of %g mm", allowance);
+    enum { SOME = 1024 };
+    /* just below three voxels: rounded, the band ends somewhere there */
+    const double band = 2.999 * swarf_stock_voxel(stock);
+    double points[3 * SOME];
+    float distance[SOME];
+    size_t pixels[SOME];
+    for (size_t i = 0; i < count;) {
+        size_t used = 0;
+        for (; i < count && used < SOME; i++) {
+            value[i] = NAN;
+            if (seen[i] != SWARF_SEEN_STOCK) continue;
+            memcpy(points + 3 * used, position + 3 * i, 3 * sizeof *points);
+            pixels[used++] = i;
+        }
+        SWARF_TRY(swarf_stock_sample(stock, points, used, distance));
+        for (size_t k = 0; k < used; k++) {
+            const double left = -(double)distance[k];
+            value[pixels[k]] = (fabs(left) < band ? left : copysign(INFINITY, left)) - allowance;
+        }
+    }
+    return SWARF_OK;
+}

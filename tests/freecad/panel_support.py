@@ -2,6 +2,7 @@
 """What tests of the live panel share: a job to watch, mouse and keys as if from the user, waiting for pictures."""
 
 import sys
+from dataclasses import replace
 
 import FreeCAD
 import FreeCADGui as Gui
@@ -129,6 +130,7 @@ class PanelTest:
             camera = self.panel.view.camera
             return (frame is not None and frame.sharp and (frame.width, frame.height) == self.panel.view.pixels()
                     and frame.place == self.panel.transport.wanted
+                    and replace(frame.view, camera=None) == replace(self.panel.current_view(), camera=None)
                     and (frame.camera.eye, frame.camera.target, frame.camera.height) ==
                     (camera.eye, camera.target, camera.height) and (place is None or frame.place == place))
         wait_for(there, "a sharp picture at %s" % place)

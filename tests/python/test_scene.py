@@ -195,6 +195,21 @@ def test_deviation_is_shown_where_the_stock_is_seen(stock):
             assert value == pytest.approx(0.3, abs=0.01) if kind == 1 else math.isnan(value)
     assert kinds >= {0, 1, 3}
     assert bytes(before) == plain, "a view of the picture as it was stays"
+    shown = swarf.Scene(swarf.Stock.box((0, 0, -10), (60, 40, -0.3), 0.5)).render(
+        camera, 150, 100, samples=1, buffers=("rgba", "position", "seen"))
+    other = shown.show_deviation(stock, 0.1, allowance=0.05)
+    for row in range(100):
+        for column in range(150):
+            kind, value = shown.seen[row, column], other[row, column]
+            x, y = (shown.position[row * 150 + column, axis] for axis in range(2))
+            if kind == 1 and 2 < x < 58 and 2 < y < 38:
+                assert value == pytest.approx(0.25, abs=0.005)
+            assert math.isnan(value) == (kind != 1)
+    deep = swarf.Scene(swarf.Stock.box((0, 0, -10), (60, 40, -5), 0.5)).render(
+        camera, 60, 40, samples=1, buffers=("rgba", "position", "seen"))
+    assert deep.show_deviation(stock, 0.1)[20, 30] == math.inf
+    with pytest.raises(TypeError, match="Solid"):
+        deep.show_deviation(camera, 0.1)
     at = 4 * (50 * 150 + 20)
     told = swarf.deviation_colours([[values[50, 20]]], plain[at:at + 4], 0.1)
     assert bytes(picture.rgba)[at:at + 4] == told != plain[at:at + 4]

@@ -64,7 +64,7 @@ class View:
 class Frame:
     """A picture, read only. rgba: bytes, rows from the top. depth: rows of mm along the view, inf for nothing.
     place: where the stock stood. sharp: whether it is as good as it gets. values: rows of deviations in mm, NaN for
-    nothing; None when they are not shown."""
+    nothing, inf beyond what is known; None when they are not shown. view: what was asked for."""
 
     width: int
     height: int
@@ -74,6 +74,7 @@ class Frame:
     place: float
     sharp: bool
     values: Any = None
+    view: Any = None
 
 
 @dataclass
@@ -132,7 +133,7 @@ class Session:
                       STOP_FINDING: sorted({place for place, _, _ in self.overview.findings})}
         self._coarse = {False: 1, True: COARSE_MAX}  # of pictures with deviations, which cost most
         self._design, self._design_is_bad, self._design_scene = None, False, None
-        self._scene = swarf.Scene(stock)
+        self._stock, self._scene = stock, swarf.Scene(stock)
         self._exact = hasattr(swarf.Scene, "set_surface")  # the native module can show more than the voxels
         if self._exact:
             self._scene.set_surface(stock, self.program, self.tools)  # while it is the first one
@@ -196,30 +197,35 @@ class Session:
                                                buffers=("rgba", "depth", "position", "seen"), **look)
         return picture, picture.show_deviation(design, view.tolerance_mm, progress=progress)
 
-    def _design_picture(self, view, progress, **how):
-        """The design alone, or None when there is none that encloses anything."""
+    def _design_picture(self, view, tolerance_mm, progress, **how):
+        """(picture, values) of the design alone, in the colours of the stock's deviation where there is a tolerance;
+        None when there is none that encloses anything."""
         if self._design_scene is None:
             if self._solid(progress) is None:
                 return None
             self._design_scene = self._swarf.Scene(
                 self._swarf.Stock.from_mesh(self.job.design, self.voxel_mm, progress=progress))
-        look = dict(view.look, colour=DESIGN_COLOUR, colouring="material", **how)
-        return self._design_scene.render(
-            view.camera, view.width, view.height, buffers=("rgba", "depth"), progress=progress,
+        look = dict(view.look, colour=TINTED_MATERIAL if tolerance_mm > 0 else DESIGN_COLOUR, colouring="material", **how)
+        picture = self._design_scene.render(
+            view.camera, view.width, view.height, buffers=("rgba", "depth", "position", "seen"), progress=progress,
             **{key: value for key, value in look.items() if key in self._keywords})
+        return picture, picture.show_deviation(self._stock, tolerance_mm) if tolerance_mm > 0 else None
 
     def _compose(self, view, place, progress, **how):
         """(rgba, depth, values) of what a view shows."""
-        design = self._design_picture(view, progress, **how) if view.shown != STOCK else None
-        if design is not None and view.shown == DESIGN:
-            return bytes(design.rgba), design.depth, None
+        alone = view.shown == DESIGN
+        design = None
+        if view.shown != STOCK:
+            design = self._design_picture(view, view.tolerance_mm if alone else 0.0, progress, **how)
+        if design is not None and alone:
+            return bytes(design[0].rgba), design[0].depth, design[1]
         picture, values = self._picture(view, place, progress, **how)
         rgba = bytes(picture.rgba)
-        return rgba if design is None else pixels.blend(rgba, bytes(design.rgba)), picture.depth, values
+        return rgba if design is None else pixels.blend(rgba, bytes(design[0].rgba)), picture.depth, values
 
     def draw(self, view, place, budget_ms, progress=None, samples=SAMPLES):
         """A Frame; budget_ms None: exact, with samples x samples rays for pixels at edges."""
-        tinted = view.tolerance_mm > 0
+        asked, tinted = view, view.tolerance_mm > 0
         coarse, how = 1 if budget_ms is None else self._coarse[tinted], {"samples": samples}
         if budget_ms is not None:
             how = {"samples": 1}
@@ -243,7 +249,7 @@ class Session:
                 coarse = max(coarse - 1, 1)
             self._coarse[tinted] = coarse
         return Frame(view.width, view.height, rgba, depth, view.camera, place, budget_ms is None and samples == SAMPLES,
-                     values)
+                     values, asked)
 
     def tool_at(self, place):
         """Number of the tool in the spindle at a place, -1 for none."""

@@ -263,7 +263,7 @@ class LivePanel(QtWidgets.QDockWidget):
 
     def wish(self):
         """Have the picture drawn as it is to be shown now."""
-        self.view.set_legend(self.tools.tolerance_mm if self.tools.shown != sessions.DESIGN else 0.0)
+        self.view.set_legend(self.tools.tolerance_mm)
         if self.session is not None and self.view.camera is not None:
             self.opening.wish(self.transport.wanted, self.current_view())
 

@@ -58,7 +58,7 @@ class Picking:
                   "depth": translate("Swarf", "{0:.3f} mm").format(found.depth_below_top),
                   "slope": "%.1f°" % found.slope_deg, "hint": ""}
         if found.deviation is not None:
-            values["deviation"] = translate("Swarf", "{0:+.3f} mm").format(found.deviation)
+            values["deviation"] = translate("Swarf", "{0:+.3f} mm").format(round(found.deviation, 3) + 0.0)
         if found.move < 0:
             values["hint"] = translate("Swarf", "The stock as it was: nothing was cut here yet.")
         else:

@@ -121,7 +121,7 @@ class PictureView(QtWidgets.QWidget):
         if self.frame is None or self.frame.values is None:
             return None
         value = self.frame.values[self._pixel(x, y)]
-        return None if math.isnan(value) else value
+        return value if math.isfinite(value) else None
 
     def image(self):
         """What is shown, without the marks: a QImage of its own, or None."""
