@@ -49,6 +49,12 @@ static swarf_status tile_one(void *context, size_t index)
     return swarf_contour_is_within(work, block, 1) ? swarf_contour_tile(work, block) : SWARF_OK;
 }
 
+static swarf_status tile_again(void *context, size_t index)
+{
+    const contour *work = context;
+    return work->blocks[index].touched ? tile_one(context, index) : SWARF_OK;
+}
+
 static swarf_status join_one(void *context, size_t index)
 {
     contour *work = context;
@@ -169,27 +175,34 @@ static int is_border(const contour *work, const contour_block *block, int x)
            (block->finished || end == work->band->end || end == work->band->end + SWARF_LEAF_DIM);
 }
 
-/* Vertices of noted cells, which are not to be left out; centres are where something was amiss already. */
-static uint8_t *kept_vertices(const contour *work, const swarf_facets *facets)
+/* Marks of vertices: those of noted cells are not to be left out, nor are centres, where something was amiss already.
+ */
+static uint8_t *mark_vertices(const contour *work, const swarf_facets *facets)
 {
-    uint8_t *kept = calloc(facets->vertex_count + 1, 1);
-    if (!kept) return NULL;
+    uint8_t *marks = calloc(facets->vertex_count + 1, 1);
+    if (!marks) return NULL;
     size_t cells = 0;
     for (size_t i = 0; i < work->block_count; i++) {
         const contour_block *block = &work->blocks[i];
         cells += block->left_count;
         uint32_t next = 0;
         if (block->left_count == 0) continue; /* beyond the band */
+        if (block->touched) memset(marks + block->vertex_first, SWARF_VERTEX_TOUCHED, block->left_count);
         for (int x = 0; x < 8; x++)
             for (uint64_t word = block->cell_mask[x]; word; word &= word - 1, next++) {
                 if (!is_border(work, block, x) && !(block->keep_mask[x] >> __builtin_ctzll(word) & 1)) continue;
                 const contour_cell *cell = &block->cells[next];
                 for (uint32_t v = cell->first; v < cell->first + work->table.entry[cell->config][cell->flip].count; v++)
-                    kept[block->vertex_first + (block->tile ? block->tile[v] & ~SWARF_TILED : v)] = 1;
+                    marks[block->vertex_first + (block->tile ? block->tile[v] & ~SWARF_TILED : v)] |=
+                        SWARF_VERTEX_LOCKED;
             }
     }
-    memset(kept + cells, 1, facets->vertex_count - cells);
-    return kept;
+    for (size_t i = 0; i < work->block_count; i++) {
+        const contour_block *block = &work->blocks[i];
+        memset(marks + cells + block->centre_first, SWARF_VERTEX_LOCKED | (block->touched ? SWARF_VERTEX_TOUCHED : 0),
+               block->centre_count);
+    }
+    return marks;
 }
 
 /* Put the finished facets of other bands behind those of this one, where they share vertices by their places. */
@@ -232,6 +245,7 @@ typedef struct stage {
     const swarf_contour_options *options;
     const swarf_progress *progress;
     swarf_facets *facets;
+    swarf_facets_memo *memo;
     swarf_contour_report *report;
 } stage;
 
@@ -264,7 +278,7 @@ static swarf_status attempt(const stage *s, int first, swarf_facet_pair **pairs,
 {
     contour *work = s->work;
     const double voxel = work->layout->voxel;
-    SWARF_TRY(swarf_parallel_for(work->block_count, tile_one, work, NULL, 0, 1));
+    SWARF_TRY(swarf_parallel_for(work->block_count, first ? tile_one : tile_again, work, NULL, 0, 1));
     SWARF_TRY(number_vertices(work));
     SWARF_TRY(swarf_parallel_for(work->block_count, join_one, work, first ? s->progress : NULL, 0.6, 0.7));
     SWARF_TRY(gather(work, s->facets));
@@ -272,21 +286,36 @@ static swarf_status attempt(const stage *s, int first, swarf_facet_pair **pairs,
     for (size_t i = 0; first && i < work->block_count; i++)
         if (swarf_contour_is_within(work, &work->blocks[i], 0)) s->report->full_triangles += work->blocks[i].full_count;
     const int keeps = !first || work->band;
-    uint8_t *kept = keeps ? kept_vertices(work, s->facets) : NULL;
-    if (keeps && !kept) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    uint8_t *marks = keeps ? mark_vertices(work, s->facets) : NULL;
+    if (keeps && !marks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     const swarf_status status =
-        swarf_facets_simplify(s->facets, s->options->error_mm, voxel, s->options->triangle_budget, kept,
+        swarf_facets_simplify(s->facets, s->options->error_mm, voxel, s->options->triangle_budget, marks, s->memo,
                               first ? s->progress : NULL, 0.7, 0.9);
-    free(kept);
+    free(marks);
     SWARF_TRY(status);
     return find_pairs(s, first, pairs, count, left);
+}
+
+/* Facets of blocks beside those whose vertices or tiles are others may be others too. Tiles look two cells about them,
+ * so that those of the next block may be others, and with them the facets of the one after. */
+static void touch_about(contour *work, const contour_block *block)
+{
+    for (int c = 0; c < 125; c++) {
+        const int part[3] = {c / 25 - 2, c / 5 % 5 - 2, c % 5 - 2};
+        int32_t corner[3];
+        for (int k = 0; k < 3; k++) corner[k] = block->ijk[k] + part[k] * SWARF_LEAF_DIM;
+        contour_block *near = swarf_contour_block_at(work, corner);
+        if (near) near->touched = 1;
+    }
 }
 
 /* The next remedy for the cells noted; without an error to spend all vertices are kept already. */
 static void take_more_care(const stage *s)
 {
+    for (size_t b = 0; b < s->work->block_count; b++) s->work->blocks[b].touched = 0;
     for (size_t b = 0; b < s->work->block_count; b++) {
         contour_block *block = &s->work->blocks[b];
+        uint64_t any = 0;
         block->changed = 0;
         if (block->finished) continue;
         for (int x = 0; x < 8; x++) {
@@ -296,7 +325,9 @@ static void take_more_care(const stage *s)
             block->calm_mask[x] |= noted & kept;
             block->keep_mask[x] |= noted;
             block->noted_mask[x] = 0;
+            any |= noted;
         }
+        if (any) touch_about(s->work, block);
     }
 }
 
@@ -324,7 +355,8 @@ static swarf_status settle(const stage *s)
 swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *options, const swarf_progress *progress,
                                   swarf_facets *facets, swarf_contour_report *report)
 {
-    const stage s = {work, options, progress, facets, report};
+    swarf_facets_memo memo = {0};
+    const stage s = {work, options, progress, facets, &memo, report};
     swarf_contour_table_fill(&work->table);
     SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, progress, 0, 0.3));
     SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, progress, 0.3, 0.6));
@@ -336,7 +368,9 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
         for (int x = 0; x < 8; x++) report->parted_cells -= (size_t)__builtin_popcountll(block->cell_mask[x]);
         report->parted_cells += block->vertex_count;
     }
-    SWARF_TRY(settle(&s));
+    const swarf_status status = settle(&s);
+    swarf_facets_memo_free(&memo);
+    SWARF_TRY(status);
     size_t own = 0;
     for (size_t f = 0; f < facets->facet_count; f++) {
         if (facets->facet[f].beyond) continue;

@@ -25,10 +25,24 @@ void swarf_facets_free(swarf_facets *facets);
 /** Drop vertices that no facet uses. */
 swarf_status swarf_facets_compact(swarf_facets *facets);
 
+/** Marks of vertices: stays; may have changed since the last time, it or what is about it. */
+enum { SWARF_VERTEX_LOCKED = 1, SWARF_VERTEX_TOUCHED = 2 };
+
+/** What simplifying came to cube by cube, so that only cubes with touched vertices are simplified again. Starts as
+ *  zeros. */
+typedef struct swarf_facets_memo {
+    struct cube_memo *cube;
+    size_t count[3];
+    double lo[3];
+} swarf_facets_memo;
+
+void swarf_facets_memo_free(swarf_facets_memo *memo);
+
 /** Remove vertices while the surface stays within error_mm of what came in, keeping edges sharper than 25 degrees,
- *  corners and topology; stops at `budget` facets (0: none). Vertices whose `locked` byte is set stay (NULL: none).
- *  The error of what is left is in the facets. */
+ *  corners and topology; stops at `budget` facets (0: none). `marks` of vertices may be NULL: none; `memo` too, and is
+ * not used with a budget. The error of what is left is in the facets. */
 swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget,
-                                   const uint8_t *locked, const swarf_progress *progress, double from, double to);
+                                   const uint8_t *marks, swarf_facets_memo *memo, const swarf_progress *progress,
+                                   double from, double to);
 
 #endif

@@ -26,7 +26,8 @@ enum { ERROR_STEPS = 8 };
 
 typedef struct job {
     swarf_facets *facets;
-    const uint8_t *locked;
+    const uint8_t *marks;
+    swarf_facets_memo *memo;  /* of this pass, NULL: none */
     double least[3], most[3]; /* of the vertices */
     double lo[3], edge, limit;
     size_t count[3];
@@ -108,8 +109,90 @@ static void free_region(simplify_region *r)
     free(r->facet);
 }
 
-static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, int shared)
+/* A facet that was left in a cube, in the numbers of the region. */
+typedef struct memo_facet {
+    uint32_t owned, v[3];
+    float error_mm;
+} memo_facet;
+
+/* What a region became; told apart from others by what went in. */
+typedef struct cube_memo {
+    memo_facet *facet;
+    size_t facet_count;
+    uint8_t *state; /* of its vertices */
+    size_t vertices, facets, owned;
+} cube_memo;
+
+void swarf_facets_memo_free(swarf_facets_memo *memo)
 {
+    const size_t cubes = memo->count[0] * memo->count[1] * memo->count[2];
+    for (size_t i = 0; memo->cube && i < cubes; i++) {
+        free(memo->cube[i].facet);
+        free(memo->cube[i].state);
+    }
+    free(memo->cube);
+    memset(memo, 0, sizeof *memo);
+}
+
+/* Without memory for it there is nothing to recall. */
+static void remember(const simplify_region *r, cube_memo *memo)
+{
+    size_t left = 0;
+    for (size_t f = 0; f < r->owned_count; f++) left += r->facet[f].alive;
+    free(memo->facet);
+    free(memo->state);
+    *memo = (cube_memo){.vertices = r->vertex_count, .facets = r->facet_count, .owned = r->owned_count};
+    memo->facet = malloc((left + 1) * sizeof *memo->facet);
+    memo->state = malloc(r->vertex_count + 1);
+    if (!memo->facet || !memo->state) return;
+    memcpy(memo->state, r->state, r->vertex_count);
+    for (size_t f = 0; f < r->owned_count; f++) {
+        const simplify_facet *here = &r->facet[f];
+        if (!here->alive) continue;
+        memo->facet[memo->facet_count++] =
+            (memo_facet){(uint32_t)f, {here->v[0], here->v[1], here->v[2]}, here->error_mm};
+    }
+}
+
+static int recall(simplify_region *r, const cube_memo *memo)
+{
+    if (!memo->facet || !memo->state || memo->vertices != r->vertex_count || memo->facets != r->facet_count ||
+        memo->owned != r->owned_count)
+        return 0;
+    memcpy(r->state, memo->state, r->vertex_count);
+    for (size_t f = 0; f < r->owned_count; f++) r->facet[f].alive = 0;
+    for (size_t i = 0; i < memo->facet_count; i++) {
+        const memo_facet *left = &memo->facet[i];
+        simplify_facet *here = &r->facet[left->owned];
+        here->alive = 1;
+        here->error_mm = left->error_mm;
+        memcpy(here->v, left->v, sizeof here->v);
+    }
+    return 1;
+}
+
+/* The facets that lie in a region wholly, back to the mesh; others are read by other threads. Returns how many went. */
+static size_t put_back(const simplify_region *r, swarf_facet *mesh)
+{
+    size_t gone = 0;
+    for (size_t f = 0; f < r->owned_count; f++) {
+        const simplify_facet *here = &r->facet[f];
+        swarf_facet *facet = &mesh[here->global];
+        if (!here->alive) {
+            facet->v[0] = SWARF_NO_VERTEX;
+            gone++;
+            continue;
+        }
+        facet->error_mm = here->error_mm;
+        for (size_t k = 0; k < 3; k++) facet->v[k] = r->global[here->v[k]];
+    }
+    return gone;
+}
+
+/* Returns whether a vertex of it is touched. */
+static int add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, int shared)
+{
+    int touched = 0;
     const size_t f = r->facet_count++;
     const swarf_facet *facet = &j->facets->facet[number];
     simplify_facet *here = &r->facet[f];
@@ -126,7 +209,9 @@ static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, 
             r->head[own] = SWARF_NO_VERTEX;
             r->mark[own] = 0;
             r->need[own] = INFINITY;
-            r->state[own] = j->locked && j->locked[vertex] ? SIMPLIFY_FIXED : j->settled[vertex] ? 0 : SIMPLIFY_DIRTY;
+            const unsigned marks = j->marks ? j->marks[vertex] : SWARF_VERTEX_TOUCHED;
+            touched |= (marks & SWARF_VERTEX_TOUCHED) != 0;
+            r->state[own] = marks & SWARF_VERTEX_LOCKED ? SIMPLIFY_FIXED : j->settled[vertex] ? 0 : SIMPLIFY_DIRTY;
             for (int c = 0; c < 3; c++)
                 r->xyz[3 * (size_t)own + (size_t)c] = j->facets->xyz[3 * (size_t)vertex + (size_t)c];
         }
@@ -135,6 +220,7 @@ static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, 
         here->next[k] = r->head[own];
         r->head[own] = (uint32_t)(4 * f + k);
     }
+    return touched;
 }
 
 static swarf_status simplify_cube(void *context, size_t cube)
@@ -157,10 +243,15 @@ static swarf_status simplify_cube(void *context, size_t cube)
     if (!r.xyz || !r.global || !r.head || !r.state || !r.mark || !r.need || !r.facet) {
         status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     } else {
-        for (size_t i = 0; i < owned; i++) add_facet(j, &r, cube, j->owned[owned_first + i], 0);
+        int touched = 0;
+        for (size_t i = 0; i < owned; i++) touched |= add_facet(j, &r, cube, j->owned[owned_first + i], 0);
         r.owned_count = owned;
-        for (size_t i = 0; i < shared; i++) add_facet(j, &r, cube, j->shared[shared_first + i], 1);
-        j->gone[cube] = swarf_simplify_region(&r, j->limit, j->first, j->facets->facet);
+        for (size_t i = 0; i < shared; i++) touched |= add_facet(j, &r, cube, j->shared[shared_first + i], 1);
+        if (touched || !j->memo || !recall(&r, &j->memo->cube[cube])) {
+            swarf_simplify_region(&r, j->limit, j->first);
+            if (j->memo) remember(&r, &j->memo->cube[cube]);
+        }
+        j->gone[cube] = put_back(&r, j->facets->facet);
         for (size_t i = 0; i < r.vertex_count; i++) j->settled[r.global[i]] = r.state[i] == 0;
     }
     free_region(&r);
@@ -204,10 +295,26 @@ static void lay_out(job *j, const struct pass *pass, double voxel)
     for (int k = 0; k < 3; k++) j->lo[k] = j->least[k] - pass->shift * j->edge;
 }
 
+/* A memo of other cubes is none. */
+static swarf_status lay_out_memo(const job *j)
+{
+    swarf_facets_memo *memo = j->memo;
+    if (!memo || (memo->cube && memcmp(memo->count, j->count, sizeof memo->count) == 0 &&
+                  memcmp(memo->lo, j->lo, sizeof memo->lo) == 0))
+        return SWARF_OK;
+    swarf_facets_memo_free(memo);
+    memo->cube = calloc(j->count[0] * j->count[1] * j->count[2], sizeof *memo->cube);
+    if (!memo->cube) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    memcpy(memo->count, j->count, sizeof memo->count);
+    memcpy(memo->lo, j->lo, sizeof memo->lo);
+    return SWARF_OK;
+}
+
 static swarf_status run_pass(job *j, const struct pass *pass, double voxel, const swarf_progress *progress, double from,
                              double to, size_t *gone)
 {
     lay_out(j, pass, voxel);
+    SWARF_TRY(lay_out_memo(j));
     const size_t cubes = j->count[0] * j->count[1] * j->count[2];
     j->owned_begin = calloc(cubes, sizeof *j->owned_begin);
     j->shared_begin = calloc(cubes, sizeof *j->shared_begin);
@@ -240,10 +347,11 @@ static void free_pass(job *j)
 }
 
 swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget,
-                                   const uint8_t *locked, const swarf_progress *progress, double from, double to)
+                                   const uint8_t *marks, swarf_facets_memo *memo, const swarf_progress *progress,
+                                   double from, double to)
 {
     if (!(error_mm > 0) || facets->facet_count == 0 || (budget && facets->facet_count <= budget)) return SWARF_OK;
-    job j = {.facets = facets, .locked = locked};
+    job j = {.facets = facets, .marks = marks};
     j.cube = malloc(facets->vertex_count * sizeof *j.cube);
     j.local = calloc(facets->vertex_count, sizeof *j.local);
     j.settled = malloc(facets->vertex_count);
@@ -259,6 +367,7 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
         for (int pass = 0; pass < PASSES && status == SWARF_OK; pass++) {
             size_t gone = 0;
             j.first = pass == 0;
+            j.memo = pass == 0 && !budget ? memo : NULL; /* the first pass takes most of the time */
             if (j.first) memset(j.settled, 0, facets->vertex_count);
             status = run_pass(&j, &passes[pass], voxel, progress, at, at + part, &gone);
             free_pass(&j);

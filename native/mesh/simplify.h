@@ -38,10 +38,8 @@ typedef struct simplify_region {
  *  ones. */
 enum { SIMPLIFY_FIXED = 1, SIMPLIFY_DIRTY = 2, SIMPLIFY_BENT = 4 };
 
-/** Remove vertices while the error stays below `limit` (mm), then put the facets it has wholly back to the mesh, those
- *  gone with v[0] = SWARF_NO_VERTEX.
- *  `first`: the limit is new, so that all vertices are looked at; else only those whose state is SIMPLIFY_DIRTY.
- *  Returns how many facets went. */
-size_t swarf_simplify_region(simplify_region *region, double limit, int first, swarf_facet *mesh);
+/** Remove vertices while the error stays below `limit` (mm).
+ *  `first`: the limit is new, so that all vertices are looked at; else only those whose state is SIMPLIFY_DIRTY. */
+void swarf_simplify_region(simplify_region *region, double limit, int first);
 
 #endif

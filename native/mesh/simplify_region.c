@@ -446,7 +446,7 @@ static void find_bent(simplify_region *r)
         }
 }
 
-size_t swarf_simplify_region(simplify_region *r, double limit, int first, swarf_facet *mesh)
+void swarf_simplify_region(simplify_region *r, double limit, int first)
 {
     const size_t far_apart = stride_of(r->vertex_count);
     static const double steps[] = {0.1, 0.2, 0.45, 0.7, 1}; /* the first only where it is flat */
@@ -465,17 +465,4 @@ size_t swarf_simplify_region(simplify_region *r, double limit, int first, swarf_
         }
         for (size_t v = 0; step == 0 && v < r->vertex_count; v++) r->state[v] &= (uint8_t)~SIMPLIFY_BENT;
     }
-    size_t gone = 0;
-    for (size_t f = 0; f < r->owned_count; f++) { /* the others are read by other threads */
-        const simplify_facet *here = &r->facet[f];
-        swarf_facet *facet = &mesh[here->global];
-        if (!here->alive) {
-            facet->v[0] = SWARF_NO_VERTEX;
-            gone++;
-            continue;
-        }
-        facet->error_mm = here->error_mm;
-        for (size_t k = 0; k < 3; k++) facet->v[k] = r->global[here->v[k]];
-    }
-    return gone;
 }
