@@ -315,22 +315,28 @@ static PyObject *deviation_wrap(module_state *state, swarf_deviation *handle)
     return (PyObject *)result;
 }
 
-static PyObject *deviation_judge(PyObject *self, PyObject *args, PyObject *keywords)
+/* What a Deviation is asked for with; objects are None where they are not given. */
+typedef struct deviation_request {
+    swarf_stock *stock; /* NULL: what `measured` measured is judged anew */
+    const swarf_solid *design;
+    const swarf_deviation *measured;
+    swarf_deviation_options options;
+    PyObject *region, *ignore, *program, *tools, *progress;
+} deviation_request;
+
+static PyObject *deviation_make(module_state *state, deviation_request *r)
 {
-    static char *names[] = {"excess", "gouge", "allowance", "region", "ignore", "program", "tools", "progress", NULL};
-    module_state *state = state_of(self);
-    swarf_deviation_options options = swarf_deviation_options_default();
-    PyObject *region = Py_None, *ignore = Py_None, *program = Py_None, *dict = Py_None, *progress = NULL;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|$dddOOOOO:judge", names, &options.excess_mm, &options.gouge_mm,
-                                     &options.allowance_mm, &region, &ignore, &program, &dict, &progress))
-        return NULL;
     swarf_deviation *handle = NULL;
     deviation_borrowed borrowed;
     native_call call;
-    if (!borrowed_begin(state, region, ignore, program, dict, &options, &borrowed) && !call_begin(&call, progress)) {
-        swarf_status status = swarf_deviation_judge(deviation_of(self), &options, &call.progress, &handle);
+    if (!borrowed_begin(state, r->region, r->ignore, r->program, r->tools, &r->options, &borrowed) &&
+        !call_begin(&call, r->progress)) {
+        swarf_status status = r->stock
+                                  ? swarf_deviation_create(r->stock, r->design, &r->options, &call.progress, &handle)
+                                  : swarf_deviation_judge(r->measured, &r->options, &call.progress, &handle);
         if (!status && borrowed.program)
-            status = swarf_deviation_find_moves(handle, borrowed.program, borrowed.tools, borrowed.tool_count);
+            status = swarf_deviation_find_moves(handle, borrowed.program, borrowed.tools, borrowed.tool_count,
+                                                &call.progress);
         if (call_end(&call, state, status)) {
             swarf_deviation_destroy(handle);
             handle = NULL;
@@ -338,6 +344,22 @@ static PyObject *deviation_judge(PyObject *self, PyObject *args, PyObject *keywo
     }
     borrowed_end(&borrowed);
     return deviation_wrap(state, handle);
+}
+
+static PyObject *deviation_judge(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"excess", "gouge", "allowance", "region", "ignore", "program", "tools", "progress", NULL};
+    deviation_request r = {.measured = deviation_of(self),
+                           .options = swarf_deviation_options_default(),
+                           .region = Py_None,
+                           .ignore = Py_None,
+                           .program = Py_None,
+                           .tools = Py_None};
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|$dddOOOOO:judge", names, &r.options.excess_mm,
+                                     &r.options.gouge_mm, &r.options.allowance_mm, &r.region, &r.ignore, &r.program,
+                                     &r.tools, &r.progress))
+        return NULL;
+    return deviation_make(state_of(self), &r);
 }
 
 static PyMethodDef deviation_methods[] = {
@@ -407,31 +429,23 @@ PyObject *measure_deviation(PyObject *module, PyObject *args, PyObject *keywords
     static char *names[] = {"stock",  "design", "excess",  "gouge", "allowance", "region",
                             "ignore", "first",  "program", "tools", "progress",  NULL};
     module_state *state = PyModule_GetState(module);
-    swarf_deviation_options options = swarf_deviation_options_default();
-    PyObject *stock, *design, *region = Py_None, *ignore = Py_None, *first = Py_None, *program = Py_None,
-                              *dict = Py_None, *progress = NULL;
+    PyObject *stock, *design, *first = Py_None;
+    deviation_request r = {.options = swarf_deviation_options_default(),
+                           .region = Py_None,
+                           .ignore = Py_None,
+                           .program = Py_None,
+                           .tools = Py_None};
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!|$dddOOOOOO:measure_deviation", names, state->stock, &stock,
-                                     state->solid, &design, &options.excess_mm, &options.gouge_mm,
-                                     &options.allowance_mm, &region, &ignore, &first, &program, &dict, &progress))
+                                     state->solid, &design, &r.options.excess_mm, &r.options.gouge_mm,
+                                     &r.options.allowance_mm, &r.region, &r.ignore, &first, &r.program, &r.tools,
+                                     &r.progress))
         return NULL;
     if (first != Py_None && !PyObject_TypeCheck(first, state->stock))
         return PyErr_Format(PyExc_TypeError, "first: a Stock is wanted");
-    if (first != Py_None) options.first = ((stock_object *)first)->handle;
-    swarf_deviation *handle = NULL;
-    deviation_borrowed borrowed;
-    native_call call;
-    if (!borrowed_begin(state, region, ignore, program, dict, &options, &borrowed) && !call_begin(&call, progress)) {
-        swarf_status status = swarf_deviation_create(((stock_object *)stock)->handle, solid_of(design), &options,
-                                                     &call.progress, &handle);
-        if (!status && borrowed.program)
-            status = swarf_deviation_find_moves(handle, borrowed.program, borrowed.tools, borrowed.tool_count);
-        if (call_end(&call, state, status)) {
-            swarf_deviation_destroy(handle);
-            handle = NULL;
-        }
-    }
-    borrowed_end(&borrowed);
-    return deviation_wrap(state, handle);
+    if (first != Py_None) r.options.first = ((stock_object *)first)->handle;
+    r.stock = ((stock_object *)stock)->handle;
+    r.design = solid_of(design);
+    return deviation_make(state, &r);
 }
 
 const char compare_place_doc[] = "compare_place(stock, design)\n--\n\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, field
-from typing import Any, Optional, Sequence
+from typing import Any, Callable, Optional, Sequence
 
 from ._native import Cutter, GeometryError, Mesh, Program, Simulation, Stock, Surface
 from .job import Job
@@ -18,6 +18,9 @@ DEFAULT_RESOLUTION = 512
 #: Set-ups in a row, so that a description that holds itself ends.
 MOST_SET_UPS = 100
 
+#: Plays the program of a set-up before on its stock, as far as verify() or others want more of it than its outcome.
+Play = Callable[[Job, Stock, Report], Simulation]
+
 
 @dataclass
 class First:
@@ -27,6 +30,7 @@ class First:
     before: Optional[Surface] = None  #: exact surface of the set-up before
     placement: Rows = IDENTITY  #: from that set-up to this
     played: list[tuple[Job, Simulation]] = field(default_factory=list)  #: set-ups before, as far as they were played
+    kept: list[tuple[Job, str]] = field(default_factory=list)  #: those that were not, and the files of their outcome
 
     def surface(self, program: Program, tools: dict[int, Cutter], progress: Report = None) -> Surface:
         """The exact surface that a program makes of it; to be asked for before the stock is cut."""
@@ -131,28 +135,36 @@ def _read_file(description: dict[str, Any], voxel: Optional[float], resolution: 
     return First(stock.placed(rows_of(description["placement"], lambda: _box_left(stock, None, path))))
 
 
-def _play_before(description: dict[str, Any], voxel: Optional[float], depth: int, progress: Report) -> First:
+def _simulate(job: Job, stock: Stock, progress: Report) -> Simulation:
+    return stock.simulate(job.program, job.tools, progress=progress)
+
+
+def _play_before(description: dict[str, Any], voxel: Optional[float], depth: int, play: Play,
+                 progress: Report) -> First:
     """What another job leaves: its program is played, unless a file holds the outcome; its exact surface stays."""
     job: Job = description["job"]
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")
     kept = description.get("path")
     left = None if kept is None else Stock.read(kept, progress=share(progress, 0, 0.3))
-    first = _make(job.stock, left.voxel if left is not None else voxel, None, depth + 1, share(progress, 0.3, 0.45))
+    first = _make(job.stock, left.voxel if left is not None else voxel, None, depth + 1, play,
+                  share(progress, 0.3, 0.45))
     before = first.surface(job.program, job.tools, progress=share(progress, 0.45, 0.5))
     if left is None:
         left = first.stock
-        first.played.append((job, left.simulate(job.program, job.tools, progress=share(progress, 0.5, 0.8))))
+        first.played.append((job, play(job, left, share(progress, 0.5, 0.8))))
+    else:
+        first.kept.append((job, os.fspath(kept)))
     rows = rows_of(description.get("placement", IDENTITY), lambda: _box_left(left, before, job.name))
     try:
         stock = left.placed(rows, voxel=voxel, surface=before, progress=share(progress, 0.8, 1))
     except GeometryError as error:
         raise GeometryError(f"{job.name}: {error}") from None
-    return First(stock, before, rows, first.played)
+    return First(stock, before, rows, first.played, first.kept)
 
 
 def _make(description: Optional[dict[str, Any]], voxel: Optional[float], resolution: Optional[float], depth: int,
-          progress: Report) -> First:
+          play: Play, progress: Report) -> First:
     if description is None:
         raise ValueError("no stock: the job does not say what is being milled")
     if depth > MOST_SET_UPS:
@@ -163,7 +175,7 @@ def _make(description: Optional[dict[str, Any]], voxel: Optional[float], resolut
     if kind == "result":
         if voxel is None and "path" not in description:
             voxel = voxel_of(description, DEFAULT_RESOLUTION if resolution is None else resolution)
-        return _play_before(description, voxel, depth, progress)
+        return _play_before(description, voxel, depth, play, progress)
     if kind not in ("box", "cylinder", "mesh"):
         raise ValueError(f"stock of kind {kind!r} is not known: box, cylinder, mesh, vdb, result")
     if voxel is None:
@@ -177,15 +189,16 @@ def make_first(
     *,
     voxel: Optional[float] = None,
     resolution: Optional[float] = None,
+    play: Play = _simulate,
     progress: Report = None,
 ) -> First:
     """The stock that a Job describes, at a voxel size (mm) or a resolution (voxels along the longest edge), with what is
-    known of it. Set-ups before it are played; a kept result has its voxel size, unless another is asked for."""
+    known of it. Set-ups before it are played, by ``play``; a kept result has its voxel size, unless another is asked for."""
     if voxel is not None and resolution is not None:
         raise ValueError("give the voxel size or the resolution, not both")
     if voxel is not None and not (math.isfinite(voxel) and voxel > 0):
         raise ValueError(f"voxel {voxel:g}: not a positive length in mm")
-    return _make(description, voxel, resolution, 0, progress)
+    return _make(description, voxel, resolution, 0, play, progress)
 
 
 def make_stock(

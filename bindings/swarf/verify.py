@@ -18,7 +18,7 @@ from .loads import Limits
 from .records import MOVE
 from .progress import Report
 from .simulate import Progress, Result
-from .stocks import make_first
+from .stocks import First, make_first
 
 #: What a design file can be, by its suffix.
 DESIGN_SUFFIXES = (".stl", ".ply", ".obj")
@@ -128,8 +128,8 @@ def verify(
     ``allowance`` is material that is meant to be left. Material left where no move went is a warning, with
     ``complete`` an error. Rapids through material, shanks and holders that touch it, and all else that Stock.check()
     looks for are findings too, as are moves that cannot be simulated (turned axes) and operations that remove nothing, in
-    the set-ups before as well;
-    ``fixtures``, with those of the job, and ``clearance`` are handed to it. ``loads`` measures what each move asks of its
+    the set-ups before as well, each with its own tools, holders and fixtures;
+    ``fixtures``, with those of the job, and ``clearance``, of all set-ups, are handed to it. ``loads`` measures what each move asks of its
     tool; beyond ``limits`` (see swarf.loads) it is a warning. Findings that ``accept`` or the job's document knows do not
     fail.
     ValueError without a design or moves; GeometryError where the design encloses nothing; whatever make_first() and
@@ -156,8 +156,9 @@ def verify(
     solid = timed("design", lambda report: Solid(mesh, progress=report))
     fixtures = [*job.fixtures, *fixtures]
     clamps = [Solid(fixture) for fixture in fixtures]
+    earlier = SetUps(clearance)
     made_first = timed("stock", lambda report: make_first(
-        job.stock, voxel=voxel, resolution=resolution, progress=report))
+        job.stock, voxel=voxel, resolution=resolution, play=earlier.play, progress=report))
     first, before = made_first.stock, made_first.played
     stock = first.copy()
     checked = timed("cut", lambda report: stock.check(
@@ -170,7 +171,7 @@ def verify(
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits, region=region)
-    found = [*findings_before(before), *findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
+    found = [*earlier.findings(made_first), *findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
              *_design_findings(solid, first, mesh), *fixture_findings(first, clamps),
              *timed("loose", lambda report: loose_findings(job, stock, first, report)),
              *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
@@ -195,19 +196,34 @@ def findings_of(job: Job, checked: Check, voxel: float) -> list[Verdict]:
     return [*_check_findings(job, checked, voxel), *_uncut_findings(job, checked)]
 
 
-def findings_before(played: Sequence[tuple[Job, Simulation]]) -> list[Verdict]:
-    """What the simulations of the set-ups before say, less what their own jobs accept. Lines, moves and operations are
-    of another program than the others': the text has them."""
-    found = []
-    for job, simulation in played:
-        of_job = [Verdict(item.severity, item.text, "uncut", *operation_of(job, item.move), item.move)
-                  for item in simulation.findings]
-        accepting.apply(job.accepted, of_job)
-        for item in of_job:
+class SetUps:
+    """Plays the set-ups before a job with all checks, each with its own tools, holders and fixtures: the ``play`` of
+    make_first()."""
+
+    def __init__(self, clearance: float = 0.0) -> None:
+        self._clearance = clearance
+        self._found: list[Verdict] = []
+
+    def play(self, job: Job, stock: Stock, progress: Report = None) -> Simulation:
+        """Play a job on its stock. What Stock.check() raises."""
+        clamps = [Solid(fixture) for fixture in job.fixtures]
+        doubts = fixture_findings(stock, clamps)
+        checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=self._clearance, teeth=job.teeth,
+                              progress=progress)
+        found = [*doubts, *findings_of(job, checked, stock.voxel)]
+        accepting.apply(job.accepted, found)
+        for item in found:
             if item.accepted is None:
                 where = f", line {item.line}" if item.line else ""
-                found.append(Verdict(item.severity, f"set-up {job.name!r}{where}: {item.text}", "uncut"))
-    return found
+                self._found.append(Verdict(item.severity, f"set-up {job.name!r}{where}: {item.text}", item.kind,
+                                           amount=item.amount, at_least=item.at_least))
+        return checked.simulation
+
+    def findings(self, made: First) -> list[Verdict]:
+        """What was found, less what the set-ups' own jobs accept, and which of them were not played. Lines, moves,
+        operations and places are of another program than the job's: the text has the lines."""
+        return self._found + [Verdict("note", f"set-up {job.name!r}: its outcome is that of {path}; its moves are not "
+                                      "checked here", "uncut") for job, path in made.kept]
 
 
 def _check_findings(job: Job, checked: Check, voxel: float) -> list[Verdict]:

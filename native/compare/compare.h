@@ -113,6 +113,6 @@ swarf_status swarf_cluster_samples(const swarf_tree_layout *layout, const swarf_
 
 /** See swarf_deviation_find_moves(). */
 swarf_status swarf_find_moves(swarf_cluster *clusters, size_t count, double voxel, const swarf_program *program,
-                              const swarf_tool *tools, size_t tool_count);
+                              const swarf_tool *tools, size_t tool_count, const swarf_progress *progress);
 
 #endif

@@ -318,9 +318,9 @@ swarf_status swarf_deviation_histogram(const swarf_deviation *deviation, double 
 }
 
 swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, const swarf_program *program,
-                                        const swarf_tool *tools, size_t tool_count)
+                                        const swarf_tool *tools, size_t tool_count, const swarf_progress *progress)
 {
     SWARF_REQUIRE(deviation && program && (tools || tool_count == 0), "deviation: deviation, program or tools missing");
     return swarf_find_moves(deviation->clusters, deviation->cluster_count, deviation->measured->layout.voxel, program,
-                            tools, tool_count);
+                            tools, tool_count, progress);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Which moves are behind a place, and whether a design can belong to a stock at all. */
+#include "base/parallel.h"
 #include "base/status.h"
 #include "compare/compare.h"
 #include "swarf/sweep.h"
@@ -11,8 +12,17 @@
 /* Clusters beyond these many are not worth a search of their own. */
 enum { MOST_CLUSTERS = 256, MOST_MOVES = sizeof((swarf_cluster *)0)->moves / sizeof(int64_t) };
 
-/* Cuts that differ by less than this many voxels at a place have both made it. */
-static const double as_near = 0.1;
+/* Cuts that differ by less than this many voxels at a place have both come as far: places on the stock's faces are as
+ * exact as that. */
+static const double as_near = 0.02;
+
+struct moves_work {
+    swarf_cluster *clusters;
+    double voxel;
+    const swarf_program *program;
+    const swarf_tool *tools;
+    size_t tool_count;
+};
 
 static const swarf_cutter *find_cutter(const swarf_tool *tools, size_t count, int32_t number)
 {
@@ -39,7 +49,7 @@ static int may_reach(const swarf_path *path, const double point[3], double radiu
     return 1;
 }
 
-/* Put a move among the nearest, the last cut first among equals; *best is the least distance so far. */
+/* Put a move among the nearest, the first given first among equals; *best is the least distance so far. */
 static void take_move(swarf_cluster *cluster, int64_t move, double distance, double near, double *best)
 {
     if (distance > *best + near) return;
@@ -48,38 +58,52 @@ static void take_move(swarf_cluster *cluster, int64_t move, double distance, dou
     if (cluster->move_count < MOST_MOVES) cluster->moves[cluster->move_count++] = move;
 }
 
-static swarf_status find_for_cluster(swarf_cluster *cluster, double voxel, const swarf_program *program,
-                                     const swarf_tool *tools, size_t tool_count)
+static swarf_status try_move(const struct moves_work *work, swarf_cluster *cluster, size_t move, double *best)
 {
-    const swarf_move *moves = swarf_program_moves(program);
-    const swarf_section *sections = swarf_program_sections(program);
+    const int32_t tool =
+        swarf_program_sections(work->program)[swarf_move_get_section(&swarf_program_moves(work->program)[move])].tool;
+    const swarf_cutter *cutter = find_cutter(work->tools, work->tool_count, tool);
+    swarf_path path;
+    if (!cutter) return SWARF_OK;
+    SWARF_TRY(swarf_program_path(work->program, move, &path));
+    const double radius = swarf_cutter_radius(cutter, SWARF_PART_FLUTES);
+    if (!path.has_motion || !(radius > 0)) return SWARF_OK;
+    double low, high;
+    swarf_cutter_extent(cutter, SWARF_PART_FLUTES, &low, &high);
+    const double wide = work->voxel + radius / 6; /* distances are right to three of these */
+    if (!may_reach(&path, cluster->place, radius, high, 3 * wide)) return SWARF_OK;
+    float distance;
+    SWARF_TRY(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, wide, cluster->place, 1, &distance));
+    if (distance < 2.99 * wide) take_move(cluster, (int64_t)move, fmax(distance, 0), as_near * work->voxel, best);
+    return SWARF_OK;
+}
+
+/* Who cut first is behind a gouge: whoever came there later found nothing left. Of material left, who came last had the
+ * last chance to take it; a rapid is not meant to, and counts only where no feed came near. */
+static swarf_status find_for_cluster(void *context, size_t index)
+{
+    const struct moves_work *work = context;
+    swarf_cluster *cluster = &work->clusters[index];
+    const swarf_move *moves = swarf_program_moves(work->program);
+    const size_t count = swarf_program_move_count(work->program);
     double best = INFINITY;
     cluster->move_count = 0;
-    for (size_t i = swarf_program_move_count(program); i-- > 0;) {
-        const swarf_cutter *cutter = find_cutter(tools, tool_count, sections[swarf_move_get_section(&moves[i])].tool);
-        swarf_path path;
-        if (!cutter) continue;
-        SWARF_TRY(swarf_program_path(program, i, &path));
-        const double radius = swarf_cutter_radius(cutter, SWARF_PART_FLUTES);
-        if (!path.has_motion || !(radius > 0)) continue;
-        double low, high;
-        swarf_cutter_extent(cutter, SWARF_PART_FLUTES, &low, &high);
-        const double wide = voxel + radius / 6; /* distances are right to three of these */
-        if (!may_reach(&path, cluster->place, radius, high, 3 * wide)) continue;
-        float distance;
-        SWARF_TRY(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, wide, cluster->place, 1, &distance));
-        if (distance < 2.99 * wide) take_move(cluster, (int64_t)i, fmax(distance, 0), as_near * voxel, &best);
-    }
+    for (int rapids = 0; rapids < 2 && cluster->move_count == 0; rapids++)
+        for (size_t i = 0; i < count; i++) {
+            const size_t move = cluster->excess ? count - 1 - i : i;
+            const int is_rapid = swarf_move_get_kind(&moves[move]) == SWARF_MOVE_RAPID;
+            if (cluster->excess && is_rapid != rapids) continue;
+            SWARF_TRY(try_move(work, cluster, move, &best));
+        }
     cluster->away_mm = cluster->move_count ? best : 0;
     return SWARF_OK;
 }
 
 swarf_status swarf_find_moves(swarf_cluster *clusters, size_t count, double voxel, const swarf_program *program,
-                              const swarf_tool *tools, size_t tool_count)
+                              const swarf_tool *tools, size_t tool_count, const swarf_progress *progress)
 {
-    for (size_t i = 0; i < count && i < MOST_CLUSTERS; i++)
-        SWARF_TRY(find_for_cluster(&clusters[i], voxel, program, tools, tool_count));
-    return SWARF_OK;
+    struct moves_work work = {clusters, voxel, program, tools, tool_count};
+    return swarf_parallel_for(count < MOST_CLUSTERS ? count : MOST_CLUSTERS, find_for_cluster, &work, progress, 0, 1);
 }
 
 /* A design this many times larger or smaller than its stock is in another unit. */

@@ -11,7 +11,7 @@ from swarf.accept import Acceptance
 from swarf.cli import main
 from swarf.job import Job
 from swarf.stocks import make_first, make_stock, stock_box
-from swarf.verify import findings_before
+from swarf.verify import SetUps
 
 LO, HI, VOXEL = (0.0, 0.0, -10.0), (60.0, 40.0, 0.0), 0.5
 BOX = {"kind": "box", "lo": LO, "hi": HI}
@@ -213,10 +213,50 @@ def test_an_earlier_set_up_that_fails_fails_the_verification(tmp_path, capsys):
 
 def test_what_an_earlier_job_accepts_is_settled():
     top = make_job(TURNED, BOX, "top")
-    played = top, make_stock(BOX, voxel=VOXEL).simulate(top.program, top.tools)
-    assert [found.severity for found in findings_before([played])] == ["error"]
+    chain = {"kind": "result", "job": top}
+
+    def found():
+        earlier = SetUps()
+        return [item.severity for item in earlier.findings(make_first(chain, voxel=VOXEL, play=earlier.play))]
+
+    assert found() == ["error"]
     top.accepted = [Acceptance("locked", kind="uncut")]
-    assert findings_before([played]) == []
+    assert found() == []
+
+
+def box_mesh(lo, hi):
+    corners = [[(lo, hi)[i >> k & 1][k] for k in range(3)] for i in range(8)]
+    quads = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+    return swarf.Mesh(corners, [triangle for a, b, c, d in quads for triangle in ((a, b, c), (a, c, d))])
+
+
+def test_earlier_set_ups_are_checked_with_their_own_fixtures(tmp_path):
+    """A clamp of the first set-up stands where its slot leaves the block; in the second it is gone, so that the same
+    place is free there. The clamp is on the first set-up's coordinates, X 62 on: the tool's side gets there with its
+    tip at X 59."""
+    clamp = box_mesh((62, 10, -12), (70, 30, 2))
+    top = make_job(TOP, BOX, "top")
+    bottom = make_job(TOP, {"kind": "result", "job": top}, "bottom")
+    bottom.design = swarf.simulate(top, voxel=VOXEL).mesh
+    assert [found.text for found in swarf.verify(bottom, voxel=VOXEL, tolerance=0.3).findings
+            if found.severity == "error"] == []
+    top.fixtures = [clamp]
+    done = swarf.verify(bottom, voxel=VOXEL, tolerance=0.3)
+    hits = [found for found in done.findings if found.kind == "fixture"]
+    assert hits and not done.passed and all(found.text.startswith("set-up 'top', line ") for found in hits)
+    assert "line 5: flutes hits a fixture, at least" in hits[0].text or "line 5: flutes hits a fixture, " in hits[0].text
+    assert hits[0].line == 0 and hits[0].place is None and hits[0].severity == "error"
+    # the holder of the first set-up is its own, too
+    top.fixtures, top.tools = [], {1: swarf.Cutter("flat:d=6,l=2,sd=6,sl=1,hd=20,hl=20")}
+    kinds = {(found.kind, found.text.partition(",")[0]) for found in swarf.verify(bottom, voxel=VOXEL, tolerance=0.3).findings
+             if found.severity == "error"}
+    assert ("holder", "set-up 'top'") in kinds and all(text == "set-up 'top'" for _, text in kinds)
+    # of a kept outcome it is said that nothing was checked
+    top.tools = {1: swarf.Cutter(TOOLS[1])}
+    swarf.simulate(top, voxel=VOXEL, outputs=[str(tmp_path / "top.vdb")])
+    bottom.stock["path"] = str(tmp_path / "top.vdb")
+    (note,) = (found for found in swarf.verify(bottom, tolerance=0.3).findings if "not checked here" in found.text)
+    assert note.severity == "note" and "set-up 'top'" in note.text
 
 
 @pytest.mark.parametrize("turn, wanted", [((), LEFT_MM3), (("--turn", "dx=0"), LEFT_MM3 + (4 - 2) * 6 * 6)])

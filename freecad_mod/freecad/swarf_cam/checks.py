@@ -66,13 +66,14 @@ def _check(job, voxel_mm, doubts, report, stop, clearance_mm):
     """Outcome without a design, and whether the program was played to its end."""
     swarf = native.load()
     from swarf.stocks import make_first
-    from swarf.verify import findings_before, findings_of, fixture_findings, loose_findings, settle
+    from swarf.verify import SetUps, findings_of, fixture_findings, loose_findings, settle
 
-    made = make_first(job.stock, voxel=voxel_mm, progress=lambda done: report("stock", done))
+    earlier = SetUps(clearance_mm)
+    made = make_first(job.stock, voxel=voxel_mm, play=earlier.play, progress=lambda done: report("stock", done))
     stock = made.stock
     first = stock.copy() if not stop or job.design is None else None  # else swarf.verify() follows, and looks itself
     clamps = [swarf.Solid(fixture) for fixture in job.fixtures]
-    doubts += findings_before(made.played) + fixture_findings(stock, clamps)
+    doubts += earlier.findings(made) + fixture_findings(stock, clamps)
     checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=clearance_mm, teeth=job.teeth, stop=stop,
                           progress=lambda done: report("cut", done))
     ended = not (stop and any(item.severity == "error" for item in checked.findings))

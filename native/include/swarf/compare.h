@@ -101,10 +101,12 @@ SWARF_API size_t swarf_deviation_points(const swarf_deviation *deviation, const 
 /** mm2 of the surface in `bins` equal steps of the deviation from lo to hi; what is beyond counts in the outer ones. */
 SWARF_API swarf_status swarf_deviation_histogram(const swarf_deviation *deviation, double lo, double hi, size_t bins,
                                                  double *out);
-/** Find the moves behind each cluster's worst place: of a gouge those whose flutes pass through it, of an excess the
- *  ones that come nearest (within half a cutter and three voxels). Up to four, the last cuts first. */
+/** Find the moves behind each cluster's worst place: of a gouge those whose flutes pass through it, the first cut
+ *  first; of an excess the feeds (where there is none, the rapids) that come nearest, within half a cutter and three
+ *  voxels, the last cut first. Up to four that come as near. After SWARF_ERROR_CANCELLED clusters have any moves. */
 SWARF_API swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, const swarf_program *program,
-                                                  const swarf_tool *tools, size_t tool_count);
+                                                  const swarf_tool *tools, size_t tool_count,
+                                                  const swarf_progress *progress);
 
 /** Text on a design that can hardly belong to a stock: beside it, larger than it, or in another unit; "" when all looks
  *  well. `size` bytes at most. */
