@@ -114,6 +114,7 @@ def make(
             for piece in result.loose.pieces
         ],
         "loose_crumbs": result.loose.crumbs,
+        "resampled_voxels": result.resampled_voxels,
         "set_ups_before": [_set_up(before, played) for before, played in result.before],
     }
     if result.comparison is not None:

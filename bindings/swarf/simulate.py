@@ -44,6 +44,7 @@ class Result:
     surface: Optional[Surface] = None  #: exact, where a mesh was made
     loose: loose.LoosePieces = field(default_factory=loose.LoosePieces)  #: what hangs on nothing any more
     dropped_mm3: float = 0.0  #: of it, where it was left out
+    resampled_voxels: float = 0.0  #: how far the first stock's voxels may be off for being turned; 0: they are as they were
 
     @property
     def failed(self) -> bool:
@@ -107,7 +108,8 @@ def simulate(
     if mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs):
         exact = timed("stock", lambda report: first.surface(job.program, job.tools, progress=report))
     simulation = timed("cut", lambda report: stock.simulate(job.program, job.tools, batch=batch, progress=report))
-    result = Result(job, stock, simulation, seconds=seconds, before=first.played, surface=exact)
+    result = Result(job, stock, simulation, seconds=seconds, before=first.played, surface=exact,
+                    resampled_voxels=first.resampled_voxels)
     result.loose = timed("loose", lambda report: loose.find(
         job, stock, lambda part: make_stock(job.stock, voxel=stock.voxel, progress=part), report))
     streamed = exact is not None and not (mesh or drop_loose or colour) and streams(

@@ -15,6 +15,10 @@ from .progress import Report, share
 #: Voxels along the longest edge of the stock where nobody says how fine: fast on any machine, and fine enough to see.
 DEFAULT_RESOLUTION = 512
 
+#: What voxels may be off after other than quarter turns (Stock.placed()), in voxels: with the exact surface of what was
+#: cut, and from voxels alone, which do not tell where within a voxel an edge is.
+RESAMPLED_EXACT, RESAMPLED_FIELD = 0.02, 0.5
+
 #: Set-ups in a row, so that a description that holds itself ends.
 MOST_SET_UPS = 100
 
@@ -31,6 +35,7 @@ class First:
     placement: Rows = IDENTITY  #: from that set-up to this
     played: list[tuple[Job, Simulation]] = field(default_factory=list)  #: set-ups before, as far as they were played
     kept: list[tuple[Job, str]] = field(default_factory=list)  #: those that were not, and the files of their outcome
+    resampled_voxels: float = 0.0  #: how far its voxels may be off for being made again; 0: they are as they were
 
     def surface(self, program: Program, tools: dict[int, Cutter], progress: Report = None) -> Surface:
         """The exact surface that a program makes of it; to be asked for before the stock is cut."""
@@ -132,7 +137,8 @@ def _read_file(description: dict[str, Any], voxel: Optional[float], resolution: 
         raise ValueError(f"{path} has voxels of {stock.voxel:g} mm: leave voxel size and resolution out")
     if "placement" not in description:
         return First(stock)
-    return First(stock.placed(rows_of(description["placement"], lambda: _box_left(stock, None, path))))
+    rows = rows_of(description["placement"], lambda: _box_left(stock, None, path))
+    return First(stock.placed(rows), resampled_voxels=0.0 if is_quarter(rows) else RESAMPLED_FIELD)
 
 
 def _simulate(job: Job, stock: Stock, progress: Report) -> Simulation:
@@ -160,7 +166,9 @@ def _play_before(description: dict[str, Any], voxel: Optional[float], depth: int
         stock = left.placed(rows, voxel=voxel, surface=before, progress=share(progress, 0.8, 1))
     except GeometryError as error:
         raise GeometryError(f"{job.name}: {error}") from None
-    return First(stock, before, rows, first.played, first.kept)
+    same = is_quarter(rows) and math.isclose(stock.voxel, left.voxel, rel_tol=1e-9)
+    return First(stock, before, rows, first.played, first.kept,
+                 max(first.resampled_voxels, 0.0 if same else RESAMPLED_EXACT))
 
 
 def _make(description: Optional[dict[str, Any]], voxel: Optional[float], resolution: Optional[float], depth: int,

@@ -99,6 +99,7 @@ def test_a_chain_is_cut_from_both_sides(turn, voxel):
     done = swarf.simulate(bottom, voxel=VOXEL if voxel is None else voxel)
     assert done.mesh.closed and done.mesh.volume == pytest.approx(LEFT_MM3, rel=2e-5)
     assert done.stock.volume() == pytest.approx(LEFT_MM3, rel=2e-3)
+    assert done.resampled_voxels == (0.02 if "z30" in turn else 0)
     assert [(job.name, len(played.removed_by_operation)) for job, played in done.before] == [("top", 1)]
     assert done.simulation.volume_initial - done.simulation.volume_final == pytest.approx(40 * 6 * 8 - 6 * 6 * 2, rel=5e-3)
     origins = done.mesh.origins(done.surface).tolist()
@@ -171,6 +172,12 @@ def test_command_line(tmp_path, capsys):
                     tmp_path / "two.ply")
     assert status == 0
     assert swarf.Mesh.read(tmp_path / "two.ply").volume == pytest.approx(LEFT_MM3, rel=2e-3)
+    # what other turns cost is said
+    status, errors = run(capsys, bottom, "--stock", tmp_path / "top.vdb", "--turn", "x180,z30,top=0", *common[:2],
+                         "--report", tmp_path / "turned.json")
+    assert status == 0 and "off by 0.5 voxels at most" in errors
+    assert json.loads((tmp_path / "turned.json").read_text())["resampled_voxels"] == 0.5
+    assert report["resampled_voxels"] == 0
 
 
 def test_command_line_mistakes(tmp_path, capsys):

@@ -70,6 +70,9 @@ def run(arguments: argparse.Namespace) -> int:
     told = [f"warning: line {piece.line}: {piece.text}" for piece in result.loose.pieces]
     if result.loose.crumbs:
         told.append(f"note: {result.loose.crumbs} crumbs of a few voxels are loose")
+    if result.resampled_voxels:
+        told.append(f"note: the stock was turned into new voxels, which are off by {result.resampled_voxels:g} voxels at "
+                    "most at its edges; quarter turns keep them as they are")
     inputs.print_findings([
         f"{finding.severity}: {f'{played.name}: ' if result.before else ''}line {finding.line}: {one_line(finding.text)}"
         for played, simulation in (*result.before, (job, result.simulation)) for finding in simulation.findings] + told)
