@@ -10,8 +10,9 @@ from .. import native
 from ..app import model
 from ..core.errors import JobError
 from . import settings
-from .qt import QtWidgets, choice, flags
+from .qt import QtWidgets, choice
 from .slices import Slices
+from .taskpanel import TaskPanel
 from .worker import Worker
 
 translate = FreeCAD.Qt.translate
@@ -19,16 +20,12 @@ translate = FreeCAD.Qt.translate
 ERROR_DECIMALS = 4
 
 
-class ExportPanel:
+class ExportPanel(TaskPanel):
     """Task panel for one simulation object."""
 
     def __init__(self, obj):
-        self.obj = obj
-        self.reading = self.worker = self.made = None
-        self.closed = False
-        self.form = QtWidgets.QWidget()
-        self.form.setObjectName("SwarfExportPanel")
-        self.form.setWindowTitle(translate("Swarf", "Export stock"))
+        super().__init__("SwarfExportPanel", translate("Swarf", "Export stock"))
+        self.obj, self.made = obj, None
         layout = QtWidgets.QFormLayout(self.form)
         self.kind = choice()
         for suffix, text in ((".stl", "STL"), (".ply", "PLY"), (".obj", "OBJ"), (".3mf", "3MF"), (".glb", "glTF"),
@@ -54,12 +51,7 @@ class ExportPanel:
         self.estimate = QtWidgets.QLabel()
         self.estimate.setWordWrap(True)
         layout.addRow(self.estimate)
-        self.bar = QtWidgets.QProgressBar()
-        self.bar.hide()
-        layout.addRow(self.bar)
-        self.message = QtWidgets.QLabel()
-        self.message.setWordWrap(True)
-        layout.addRow(self.message)
+        self.add_progress(layout)
         for signal in (self.kind.currentIndexChanged, self.colour.currentIndexChanged, self.error.valueChanged):
             signal.connect(self.show_estimate)
         self.show_estimate()
@@ -89,38 +81,13 @@ class ExportPanel:
         """What the file is coloured by, None for nothing."""
         return self.colour.currentData() if self.colour.isEnabled() else None
 
-    def getStandardButtons(self):
-        """OK and Cancel."""
-        return flags(QtWidgets.QDialogButtonBox.Ok, QtWidgets.QDialogButtonBox.Cancel)
-
-    def accept(self):
-        """Ask for the file, then start; the panel stays until the end."""
-        if not self.working:
-            name = "".join(letter if letter.isalnum() or letter in " -_" else "_" for letter in self.obj.Label)
-            path, _ = QtWidgets.QFileDialog.getSaveFileName(
-                self.form, translate("Swarf", "Export stock"), name + self.suffix, "*" + self.suffix)
-            if path:
-                self.start(path if os.path.splitext(path)[1] else path + self.suffix)
-        return False
-
-    @property
-    def working(self):
-        """Whether it reads or writes."""
-        return self.reading is not None or self.worker is not None
-
-    def reject(self):
-        """Cancel the work, or close the panel when there is none."""
-        if self.reading is not None:
-            self.reading.cancel()
-            self.reading = None
-            self.end(translate("Swarf", "Cancelled; nothing was changed."))
-            return False
-        if self.worker is not None:
-            self.worker.cancel()
-            self.message.setText(translate("Swarf", "Cancelling ..."))
-            return False
-        self.close()
-        return True
+    def begin(self):
+        """Ask for the file, then start."""
+        name = "".join(letter if letter.isalnum() or letter in " -_" else "_" for letter in self.obj.Label)
+        path, _ = QtWidgets.QFileDialog.getSaveFileName(
+            self.form, translate("Swarf", "Export stock"), name + self.suffix, "*" + self.suffix)
+        if path:
+            self.start(path if os.path.splitext(path)[1] else path + self.suffix)
 
     def start(self, path):
         """Read the job here, between the events, then mesh and write in a thread."""
@@ -139,7 +106,7 @@ class ExportPanel:
             self.fail(error)
             return
         self.made = made
-        self.worker = Worker(made.run, lambda fraction: self.bar.setValue(int(1000 * fraction)), self.on_end)
+        self.worker = Worker(made.run, self.show_progress, self.on_end)
         self.worker.start()
 
     def on_end(self, count, error):
@@ -163,23 +130,6 @@ class ExportPanel:
         FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: written: {0}, {1:.2f} MB\n").format(
             self.made.path, os.path.getsize(self.made.path) / 1e6))
         self.close()
-
-    def end(self, text):
-        """Ready to begin again."""
-        self.bar.hide()
-        self.message.setText(text)
-
-    def fail(self, error):
-        """In the panel, where the user looks, and in the report view, where it stays."""
-        text = str(error) or type(error).__name__
-        self.end(text)
-        FreeCAD.Console.PrintError("Swarf: %s\n" % text)
-
-    def close(self):
-        """Close the panel once."""
-        if not self.closed:
-            self.closed = True
-            Gui.Control.closeDialog()
 
 
 def show_panel(obj):

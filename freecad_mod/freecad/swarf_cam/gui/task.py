@@ -9,8 +9,9 @@ import FreeCADGui as Gui
 from .. import native
 from ..app import setups, simulation
 from ..core.errors import JobError
-from .qt import QtWidgets, choice, flags
+from .qt import QtWidgets, choice
 from .slices import Slices
+from .taskpanel import TaskPanel
 from .worker import Worker
 
 translate = FreeCAD.Qt.translate
@@ -90,16 +91,13 @@ class StockChoice:
         simulation.set_stock(self.job, self.chosen, placement)
 
 
-class SimulationPanel:
+class SimulationPanel(TaskPanel):
     """Task panel for a new simulation of a job (obj None) or for an existing one."""
 
     def __init__(self, job, obj=None):
+        super().__init__("SwarfSimulationPanel", translate("Swarf", "Milling simulation"))
         self.job, self.obj = job, obj
-        self.reading = self.worker = self.prepared = self.folder = None
-        self.closed = False
-        self.form = QtWidgets.QWidget()
-        self.form.setObjectName("SwarfSimulationPanel")
-        self.form.setWindowTitle(translate("Swarf", "Milling simulation"))
+        self.prepared = self.folder = None
         layout = QtWidgets.QFormLayout(self.form)
         layout.addRow(translate("Swarf", "Job"), QtWidgets.QLabel(job.Label))
         self.stock = StockChoice(job)
@@ -116,13 +114,7 @@ class SimulationPanel:
         self.estimate = QtWidgets.QLabel()
         self.estimate.setWordWrap(True)
         layout.addRow(self.estimate)
-        self.bar = QtWidgets.QProgressBar()
-        self.bar.setRange(0, 1000)
-        self.bar.hide()
-        layout.addRow(self.bar)
-        self.message = QtWidgets.QLabel()
-        self.message.setWordWrap(True)
-        layout.addRow(self.message)
+        self.add_progress(layout)
         self.voxel.valueChanged.connect(self.show_estimate)
         self.show_estimate()
 
@@ -135,41 +127,12 @@ class SimulationPanel:
         """What the chosen size will cost."""
         self.estimate.setText(describe_estimate(self.job, self.voxel.value()))
 
-    def getStandardButtons(self):
-        """OK and Cancel."""
-        return flags(QtWidgets.QDialogButtonBox.Ok, QtWidgets.QDialogButtonBox.Cancel)
-
-    def accept(self):
-        """Start; the panel stays until the end."""
-        if not self.working:
-            self.start()
-        return False
-
-    @property
-    def working(self):
-        """Whether it reads or simulates."""
-        return self.reading is not None or self.worker is not None
-
-    def reject(self):
-        """Cancel the work, or close the panel when there is none."""
-        if self.reading is not None:
-            self.reading.cancel()
-            self.reading = None
-            self.stop_showing_work(translate("Swarf", "Cancelled; nothing was changed."))
-            return False
-        if self.worker is not None:
-            self.worker.cancel()
-            self.message.setText(translate("Swarf", "Cancelling ..."))
-            return False
-        self.close()
-        return True
-
-    def start(self):
+    def begin(self):
         """Read the job here, between the events, then simulate in a thread."""
         try:
             self.stock.apply()
         except JobError as error:
-            self.show_error(error)
+            self.fail(error)
             return
         self.voxel.setEnabled(False)
         self.message.setText("")
@@ -181,36 +144,30 @@ class SimulationPanel:
         """The job is read, or cannot be."""
         self.reading = None
         if error is not None:
-            self.stop_showing_work("")
-            self.show_error(error)
+            self.fail(error)
             return
         self.prepared = prepared
         self.folder = tempfile.TemporaryDirectory(prefix="swarf-")
         self.bar.setRange(0, 1000)
         folder = self.folder.name
-        self.worker = Worker(lambda progress: prepared.run(folder, progress), self.on_progress, self.on_end)
+        self.worker = Worker(lambda progress: prepared.run(folder, progress), self.show_progress, self.on_end)
         self.worker.start()
 
-    def stop_showing_work(self, text):
+    def end(self, text):
         """Ready to begin again."""
+        super().end(text)
         self.voxel.setEnabled(True)
-        self.bar.hide()
-        self.message.setText(text)
-
-    def on_progress(self, fraction):
-        """Fraction done."""
-        self.bar.setValue(int(1000 * fraction))
 
     def on_end(self, result, error):
         """The thread is through, with a result or an error."""
         cancelled = self.worker.cancelled
         self.worker = None
-        self.stop_showing_work("")
+        self.end("")
         try:
             if cancelled:  # even where nothing was left to break off
                 self.message.setText(translate("Swarf", "Cancelled; nothing was changed."))
             elif error is not None:
-                self.show_error(error)
+                self.fail(error)
             else:
                 self.finish(result)
         finally:
@@ -222,26 +179,14 @@ class SimulationPanel:
         try:
             obj = simulation.add(self.job, self.prepared, result, self.obj)
         except ReferenceError:
-            self.show_error(translate("Swarf", "The job was deleted meanwhile; its simulation is discarded."))
+            self.fail(translate("Swarf", "The job was deleted meanwhile; its simulation is discarded."))
             return
         except BaseException as error:
-            self.show_error(error)
+            self.fail(error)
             raise
         FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: {0}: {1:.1f} mm^3 removed in {2:.1f} s\n").format(
             obj.Label, result.volume_initial - result.volume_final, result.seconds))
         self.close()
-
-    def show_error(self, error):
-        """In the panel, where the user looks, and in the report view, where it stays."""
-        text = str(error) or type(error).__name__
-        self.message.setText(text)
-        FreeCAD.Console.PrintError("Swarf: %s\n" % text)
-
-    def close(self):
-        """Close the panel once."""
-        if not self.closed:
-            self.closed = True
-            Gui.Control.closeDialog()
 
 
 def show_panel(job, obj=None, start=False):
@@ -259,5 +204,5 @@ def show_panel(job, obj=None, start=False):
         return None
     Gui.Control.showDialog(panel)
     if start:
-        panel.start()
+        panel.begin()
     return panel
