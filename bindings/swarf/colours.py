@@ -81,9 +81,10 @@ def by_operation(mesh: Mesh, surface: Surface, job: Job, moves: Optional[int] = 
     return _fill(mesh, colours, FIRST_SHAPE, share(progress, 0.75, 1))
 
 
-def by_deviation(mesh: Mesh, design: Mesh, tolerance: float, progress: Report = None) -> list[RGB]:
-    """Green within the tolerance (mm), by yellow to red where material is left, by cyan to blue where it is missing; of
-    the middles of the triangles. Cancelled."""
+def by_deviation(mesh: Mesh, design: Mesh, tolerance: float, progress: Report = None, *,
+                 allowance: float = 0.0) -> list[RGB]:
+    """Green within the tolerance (mm) of the design and the allowance that is meant to be left on it, by yellow to red
+    where more is left, by cyan to blue where less; of the middles of the triangles. Cancelled."""
     if not mesh.triangle_count:
         return []
     vertices, triangles = mesh.vertices.tolist(), mesh.triangles.tolist()
@@ -96,6 +97,7 @@ def by_deviation(mesh: Mesh, design: Mesh, tolerance: float, progress: Report = 
             middles.clear()
     if middles:
         values.extend(solid.distance(middles))
+    values = array.array("d", (value - allowance for value in values))
     table = memoryview(values).cast("B").cast("d", (len(values), 1))
     tinted = deviation_colours(table, bytes(LIT) * len(values), tolerance)
     return [(tinted[i], tinted[i + 1], tinted[i + 2]) for i in range(0, len(tinted), 4)]
@@ -119,7 +121,7 @@ def _scale(part: float) -> RGB:
 
 
 def make(kind: str, mesh: Mesh, surface: Optional[Surface], job: Any, tolerance: float = 0.05,
-         progress: Report = None) -> list[RGB]:
+         progress: Report = None, *, allowance: float = 0.0) -> list[RGB]:
     """Colours of one of KINDS of the mesh of a simulated job. ValueError where what it needs is missing; Cancelled."""
     if kind == "operation":
         if surface is None:
@@ -128,7 +130,7 @@ def make(kind: str, mesh: Mesh, surface: Optional[Surface], job: Any, tolerance:
     if kind == "deviation":
         if job.design is None:
             raise ValueError(f"{job.name}: colours by deviation need a design, and the job has none")
-        return by_deviation(mesh, job.design, tolerance, progress)
+        return by_deviation(mesh, job.design, tolerance, progress, allowance=allowance)
     if kind == "thickness":
         return by_thickness(mesh, progress=progress)
     raise ValueError(f"colours {kind!r}: wanted {', '.join(KINDS)}")

@@ -68,16 +68,18 @@ def simulate(
     view: str = "isometric",
     colour: Optional[str] = None,
     tolerance: float = 0.05,
+    allowance: float = 0.0,
     drop_loose: bool = False,
     progress: Optional[Progress] = None,
 ) -> Result:
     """Cut a job's stock with its program; compare, mesh, picture and write what is asked for.
 
-    Where the stock is what another job leaves, that is played first. ``voxel`` in mm, or ``resolution`` voxels along the stock's longest edge (512 unless told); ``batch`` as in
-    Stock.simulate(). The stock is compared with the design when the job has one. A mesh is made when ``mesh`` is true
-    or an output needs it, and goes straight to its file where only .stl files do; ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file.
+    Where the stock is what another job leaves, that is played first. ``voxel`` in mm, or ``resolution`` voxels along the
+    stock's longest edge (512 unless told); ``batch`` as in Stock.simulate(). The stock is compared with the design when
+    the job has one. A mesh is made when ``mesh`` is true or an output needs it; for one .stl file alone it is streamed
+    there (Mesh.stream()). ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file.
     ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by, deviations green within
-    ``tolerance`` (mm). Pieces that come loose are in
+    ``tolerance`` of the design and ``allowance``, which is meant to be left on it (mm). Pieces that come loose are in
     the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. Seconds of each stage
     are in the result. Raises what the stages raise; nothing is written before the cutting is done.
     """
@@ -129,7 +131,8 @@ def simulate(
         result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
     tints = None
     if colour is not None and result.mesh is not None:
-        tints = timed("mesh", lambda report: colours.make(colour, result.mesh, exact, job, tolerance, progress=report))
+        tints = timed("mesh", lambda report: colours.make(
+            colour, result.mesh, exact, job, tolerance, progress=report, allowance=allowance))
     for path in outputs:
         if output_suffix(path) in MESH_SUFFIXES and streamed:
             timed("mesh", lambda report: Mesh.stream(stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=exact,

@@ -199,7 +199,7 @@ def check():
     document = FreeCAD.openDocument(path)
     pump(0.5)
     obj, = [item for item in document.Objects if simulation.is_simulation(item)]
-    assert type(obj.ViewObject.Proxy).__name__ == "SimulationView"
+    assert type(obj.ViewObject.Proxy).__name__ == "SimulationView" and obj.ViewObject.CreaseAngle == 25
     assert obj.UpToDate and obj.ViewObject.Proxy.getIcon().endswith("swarf.svg")
 
 

@@ -224,6 +224,21 @@ def test_the_tolerance_of_colours(tmp_path, capsys):
         assert main([*words, wrong]) == 2 and "wanted a number above 0" in capsys.readouterr().err
 
 
+def test_the_allowance_of_colours(capsys):
+    """A plate that is 1 mm too large all round is what an allowance of 1 mm asks for."""
+    plate = swarf.Mesh.from_stock(swarf.Stock.box((-1, -1, -6), (31, 21, 1), 0.5))
+    design = stocks._box_mesh(((0, 0, -5), (30, 20, 0)))
+    exact, left, missing = (colours.by_deviation(plate, design, 0.2, allowance=mm) for mm in (1.0, 0.0, 2.0))
+    corners, solid = plate.vertices.tolist(), swarf.Solid(design)
+    middles = [[sum(corners[v][k] for v in row) / 3 for k in range(3)] for row in plate.triangles.tolist()]
+    faces = [i for i, value in enumerate(solid.distance(middles)) if value < 1.01]
+    assert len(faces) > 6
+    assert all(exact[i][1] > max(exact[i][0], exact[i][2]) for i in faces)  # green
+    assert all(left[i][0] > left[i][2] and missing[i][2] > missing[i][0] for i in faces)
+    words = ["simulate", "none.nc", "--allowance", "nan"]
+    assert main(words) == 2 and "allowance nan" in capsys.readouterr().err
+
+
 def test_lumps(done):
     lumps, places = done.stock.lumps([(5, 10, -2), (15, 10, -2), (18, 5, -2)])
     assert len(lumps) == 3 and places[0] == 0 and places[1] is None and places[2] in (1, 2)

@@ -28,6 +28,8 @@ def add(subparsers: Any) -> None:
     command.add_argument("--colours", choices=colours.KINDS, help="what mesh files are coloured by (not .stl)")
     command.add_argument("--tolerance", metavar="MM", type=float, default=0.05,
                          help="deviations up to this are coloured green (default 0.05)")
+    command.add_argument("--allowance", metavar="MM", type=float, default=0.0,
+                         help="material meant to be left on the design: deviations are coloured by what is left beyond it")
     command.add_argument("--loose", choices=("keep", "drop"), default="keep",
                          help="pieces that have come loose: keep them, or leave them out (default: keep)")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
@@ -45,6 +47,8 @@ def run(arguments: argparse.Namespace) -> int:
     check_outputs((*arguments.output, arguments.picture, arguments.report), arguments.input)
     if not (math.isfinite(arguments.tolerance) and arguments.tolerance > 0):
         raise ValueError(f"tolerance {arguments.tolerance:g}: wanted a number above 0")
+    if not math.isfinite(arguments.allowance):
+        raise ValueError(f"allowance {arguments.allowance:g}: wanted a number")
     machine = None if arguments.machine is None else timing.read_machine(arguments.machine)
     with Bar() as bar:
         started = time.perf_counter()
@@ -60,6 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
             picture=arguments.picture,
             colour=arguments.colours,
             tolerance=arguments.tolerance,
+            allowance=arguments.allowance,
             drop_loose=arguments.loose == "drop",
             progress=bar,
         )

@@ -7,6 +7,9 @@ from .. import ICONS
 
 STOCK_COLOUR = (0.62, 0.70, 0.76)
 
+# Degrees: triangles that meet at less are shaded as one curved face. What the mesher takes for an edge, native/mesh.
+SMOOTH_DEG = 25
+
 
 class SimulationView:
     """View provider: FreeCAD's mesh view, with an icon that shows whether the results are up to date."""
@@ -15,6 +18,7 @@ class SimulationView:
         vobj.Proxy = self
         vobj.ShapeColor = STOCK_COLOUR
         vobj.DisplayMode = "Shaded"
+        vobj.CreaseAngle = SMOOTH_DEG
 
     def attach(self, vobj):
         """Called when the view is made and when a document is opened."""
