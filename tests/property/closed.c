@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "../bench/jobs.h"
-#include "random_stock.h"
 #include "shapes.h"
+#include "stocks.h"
 #include "verdict.h"
 
 static int is_good(const verdict *v)
@@ -90,9 +90,8 @@ static void check_random(int count)
     for (int i = 0; i < count; i++) {
         const double voxel = test_random_in(&random, 0.05, 0.2);
         swarf_surface *surface = NULL;
-        swarf_stock *stock = random_stock(&random, voxel, 6, &surface);
+        swarf_stock *stock = stock_random(&random, voxel, 6, &surface);
         char name[64];
-        if (!stock) continue;
         snprintf(name, sizeof name, "random program %d, voxel %.3f", i, voxel);
         check_stock(name, stock, surface, voxel);
         swarf_surface_release(surface);

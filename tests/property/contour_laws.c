@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "cuts.h"
-#include "random_stock.h"
+#include "stocks.h"
 
 /* V - E + F: twice the number of shells less twice the number of holes through them. */
 static long euler_number(const swarf_mesh *mesh)
@@ -36,8 +36,7 @@ int main(void)
     for (int i = 0; i < count; i++) {
         const double voxel = test_random_in(&random, 0.1, 0.5);
         swarf_surface *surface = NULL;
-        swarf_stock *stock = random_stock(&random, voxel, 6, &surface);
-        if (!stock) continue;
+        swarf_stock *stock = stock_random(&random, voxel, 6, &surface);
         double volume = 0;
         CHECK_OK(swarf_stock_volume(stock, &volume));
         long full_euler = 0;

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "cuts.h"
-#include "random_stock.h"
+#include "stocks.h"
 
 static char *read_file(const char *path, size_t *length)
 {
@@ -172,7 +172,7 @@ int main(void)
     for (int i = 0; i < counts[test_size()]; i++) {
         swarf_surface *surface = NULL;
         const double voxel = test_random_in(&random, 0.1, 0.2);
-        swarf_stock *stock = random_stock(&random, voxel, test_random_in(&random, 12, 24), &surface);
+        swarf_stock *stock = stock_random(&random, voxel, test_random_in(&random, 12, 24), &surface);
         if (!stock) break;
         check_stock(stock, surface, folder);
         swarf_surface_release(surface);

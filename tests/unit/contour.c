@@ -5,16 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "test.h"
+#include "stocks.h"
 
 static swarf_stock *make_box(const double lo[3], const double hi[3], double voxel)
 {
-    swarf_stock_options options = swarf_stock_options_default();
-    options.voxel_mm = voxel;
     const swarf_box box = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
-    swarf_stock *stock = NULL;
-    CHECK_OK(swarf_stock_create_box(&box, &options, &stock));
-    return stock;
+    return stock_block(&box, voxel);
 }
 
 static int is_manifold(const swarf_mesh *mesh)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "shapes.h"
+#include "stocks.h"
 #include "test.h"
 
 static const double pi = 3.14159265358979323846;
@@ -102,13 +103,10 @@ static void check_hollow(void)
 /* Plates with holes, cut and contoured: as many holes as were drilled; cut in two they are two pieces. */
 static void check_drilled(void)
 {
-    swarf_stock_options options = swarf_stock_options_default();
-    options.voxel_mm = 0.2;
     const swarf_box box = {{0, 0, -2}, {40, 10, 0}};
-    swarf_stock *stock = NULL;
+    swarf_stock *stock = stock_block(&box, 0.2);
     swarf_cutter *drill = NULL;
     CHECK_OK(swarf_cutter_parse("flat:d=4,l=9", &drill));
-    if (!CHECK_OK(swarf_stock_create_box(&box, &options, &stock))) return;
     for (int holes = 0; holes <= 4; holes++) {
         const double x = 4 + 8.0 * holes + (holes > 1 ? 4 : 0);
         swarf_path path = {.start = {x, 5, 1}, .end = {x, 5, -3}, .has_motion = 1};

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "shapes.h"
+#include "stocks.h"
 #include "test.h"
 
 static const double pi = 3.14159265358979323846;
@@ -99,16 +100,13 @@ static void check_splits(void)
 /* The mesh of a plate with a grid of drilled holes and a pocket, cut at its faces and between. */
 static void check_plate(void)
 {
-    swarf_stock_options options = swarf_stock_options_default();
-    options.voxel_mm = 0.25;
     const swarf_box block = {{0, 0, -6}, {40, 30, 0}};
-    swarf_stock *stock = NULL;
+    swarf_stock *stock = stock_block(&block, 0.25);
     swarf_program *program = NULL;
     swarf_cutter *cutter = NULL;
     swarf_mesh *mesh = NULL;
     swarf_surface *surface = NULL;
     CHECK_OK(swarf_cutter_parse("flat:d=3,l=20", &cutter));
-    CHECK_OK(swarf_stock_create_box(&block, &options, &stock));
     CHECK_OK(swarf_program_create((double[]){0, 0, 9}, &program));
     CHECK_OK(swarf_program_add_operation(program, "holes"));
     CHECK_OK(swarf_program_set_section(program, &(swarf_section){.tool = 1}));
@@ -273,13 +271,10 @@ static void check_draft(void)
 
 static void check_lumps(void)
 {
-    swarf_stock_options options = swarf_stock_options_default();
-    options.voxel_mm = 0.1;
     const swarf_box block = {{0, 0, -3}, {30, 20, 0}};
-    swarf_stock *stock = NULL;
+    swarf_stock *stock = stock_block(&block, 0.1);
     swarf_cutter *cutter = NULL;
     CHECK_OK(swarf_cutter_parse("flat:d=2,l=20", &cutter));
-    CHECK_OK(swarf_stock_create_box(&block, &options, &stock));
     swarf_lumps *lumps = NULL;
     size_t count = 0;
     const double points[3][3] = {{5, 10, -1}, {25, 10, -1}, {15, 10, 3}};
@@ -328,13 +323,10 @@ static int stop_late(void *user, double fraction)
 static void check_tiles(void)
 {
     enum { WAYS = 9 };
-    swarf_stock_options options = swarf_stock_options_default();
-    options.voxel_mm = 0.2;
     const swarf_box block = {{0, 0, -1}, {40, 40, 0}};
-    swarf_stock *stock = NULL;
+    swarf_stock *stock = stock_block(&block, 0.2);
     swarf_cutter *cutter = NULL;
     CHECK_OK(swarf_cutter_parse("flat:d=1,l=20", &cutter));
-    CHECK_OK(swarf_stock_create_box(&block, &options, &stock));
     for (int i = 1; i <= WAYS; i++) { /* further and further apart */
         const double at = 2 * i + 0.2 * i * i;
         const swarf_path along[2] = {{.start = {at, -5, -2}, .end = {at, 45, -2}, .has_motion = 1},

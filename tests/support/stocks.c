@@ -1,19 +1,24 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "random_stock.h"
+#include "stocks.h"
 
 #include <stdlib.h>
 
-enum { CUTTERS = 4 };
-
-swarf_stock *random_stock(test_random *random, double voxel, double length, swarf_surface **surface)
+swarf_stock *stock_block(const swarf_box *box, double voxel)
 {
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = voxel;
+    swarf_stock *stock = NULL;
+    if (!CHECK_OK(swarf_stock_create_box(box, &options, &stock))) exit(test_end());
+    return stock;
+}
+
+enum { CUTTERS = 4 };
+
+swarf_stock *stock_random(test_random *random, double voxel, double length, swarf_surface **surface)
+{
     const double offset = test_random_in(random, -50, 50);
     const swarf_box box = {{offset, 0, -5}, {offset + length, 6, 0}};
-    swarf_stock *stock = NULL;
-    if (!CHECK_OK(swarf_stock_create_box(&box, &options, &stock))) return NULL;
-    swarf_stock *first = NULL;
+    swarf_stock *stock = stock_block(&box, voxel), *first = NULL;
     swarf_program *program = NULL;
     swarf_tool tools[CUTTERS] = {{0}};
     CHECK_OK(swarf_stock_copy(stock, &first));
