@@ -170,6 +170,24 @@ class Watching(PanelTest):
         key(view, QtCore.Qt.Key_0, "0")
         pump(0.5)
 
+    def origin(self):
+        """The origin's axes and the outline of the stock as it was, by a setting."""
+        panel = self.panel
+        panel.player.seek(panel.session.listing.operation_begin[1])
+        before = self.image()
+        self.settings.set_flag("ShowOrigin", True)
+        panel.wish()
+        image = self.image()
+        screenshot("panel-origin.png")
+        assert 0.001 < differing(before, image) < 0.1
+        x, y, _ = panel.view.camera.project((0.5 * panel.session.box[1][0], 0, 0), panel.view.aspect())
+        rows = range(int((1 - y) / 2 * image.height()) - 3, int((1 - y) / 2 * image.height()) + 4)
+        column = int((x + 1) / 2 * image.width())
+        assert any(image.pixel(column, row) != before.pixel(column, row) for row in rows), "the outline's upper edge"
+        self.settings.set_flag("ShowOrigin", False)
+        panel.wish()
+        assert differing(before, self.image()) == 0
+
     def looking(self, job):
         """Wide and floating, dark, in German."""
         from freecad.swarf_cam.gui.panel import dock
@@ -409,7 +427,7 @@ def check():
     test = Watching()
     document, job = new_job("live")
     test.run((test.preferences,), (test.opening, document, job), (test.transporting,), (test.steering,),
-             (test.looking, job), (test.clicking, document), (test.section,), (test.accuracy,),
+             (test.origin,), (test.looking, job), (test.clicking, document), (test.section,), (test.accuracy,),
              (test.outputs, document))
 
 

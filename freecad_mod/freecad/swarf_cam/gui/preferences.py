@@ -47,6 +47,7 @@ class Page:
                            ("Perspective", translate("Swarf", "Perspective")),
                            ("ShowCutter", translate("Swarf", "Show the cutter")),
                            ("ShowPath", translate("Swarf", "Show the tool's path")),
+                           ("ShowOrigin", translate("Swarf", "Show the origin and the outline of the stock")),
                            ("Occlusion", translate("Swarf", "Darken corners when the view is at rest")),
                            ("Shadow", translate("Swarf", "Shadows when the view is at rest"))):
             box = QtWidgets.QCheckBox(text)

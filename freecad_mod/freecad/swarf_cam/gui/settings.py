@@ -17,7 +17,7 @@ TOLERANCE_MM, TOLERANCE_MIN_MM, TOLERANCE_MAX_MM = 0.05, 0.001, 10.0
 CLEARANCE_MAX_MM = 100.0
 
 BOOLEANS = {"AutoPlay": True, "AutoCheck": True, "StopAtError": False, "ShowCutter": True, "ShowPath": False,
-            "Perspective": False, "Occlusion": True, "Shadow": False}
+            "ShowOrigin": False, "Perspective": False, "Occlusion": True, "Shadow": False}
 
 
 def _group():

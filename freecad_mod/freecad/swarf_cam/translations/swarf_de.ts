@@ -631,6 +631,10 @@
             <translation>Werkzeug zeigen</translation>
         </message>
         <message>
+            <source>Show the origin and the outline of the stock</source>
+            <translation>Ursprung und Umriss des Rohteils zeigen</translation>
+        </message>
+        <message>
             <source>Show the stock, the model that it should become, or one over the other</source>
             <translation>Das Rohteil zeigen, das Modell, das es werden soll, oder beide übereinander</translation>
         </message>

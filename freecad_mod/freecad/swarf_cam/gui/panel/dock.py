@@ -3,6 +3,8 @@
 here runs in the GUI's thread and returns at once.
 """
 
+import math
+
 import FreeCAD
 import FreeCADGui as Gui
 
@@ -39,6 +41,9 @@ SIZES = (900, 150)
 
 # Width and height of the dock at first, pixels.
 DOCK_SIZE = (640, 720)
+
+# Length of the origin's axes, as a part of the stock's diagonal.
+AXES_SHARE = 0.2
 
 # Least width of a page of the lists, pixels.
 PAGE_WIDTH = 400
@@ -244,7 +249,9 @@ class LivePanel(QtWidgets.QDockWidget):
 
     def _look(self):
         bottom, top = colours.background(self.palette())
-        return (("background", bottom), ("background_top", top), ("occlusion", settings.flag("Occlusion")),
+        box = self.session.box if settings.flag("ShowOrigin") else None
+        return (("outline", box), ("axes", AXES_SHARE * math.dist(*box) if box else 0.0),
+                ("background", bottom), ("background_top", top), ("occlusion", settings.flag("Occlusion")),
                 ("shadow", settings.flag("Shadow")), ("edges", True),
                 ("colouring", "material" if self.tools.tolerance_mm else self.tools.colouring),
                 ("colour", colours.MATERIAL), ("sections", self.section.planes()), ("selected", self._selected()))
