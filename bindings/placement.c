@@ -152,17 +152,9 @@ PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords)
     if (!points) {
         PyErr_NoMemory();
     } else if (values && !call_begin(&call, progress)) {
-        const swarf_status status = swarf_mesh_origins(mesh, surface, count, reach, &call.progress, points);
-        int32_t *out = (int32_t *)(void *)PyBytes_AsString(values);
-        for (size_t i = 0; i < rows && !status; i++) {
-            int set_up = 0;
-            int64_t move = -2;
-            if (points[i].move != -2) swarf_surface_origin(surface, points[i].move, &set_up, &move);
-            out[4 * i] = set_up;
-            out[4 * i + 1] = (int32_t)move;
-            out[4 * i + 2] = points[i].piece;
-            out[4 * i + 3] = (int32_t)swarf_surface_face(surface, &points[i]);
-        }
+        swarf_surface_mark *out = (swarf_surface_mark *)(void *)PyBytes_AsString(values);
+        swarf_status status = swarf_mesh_origins(mesh, surface, count, reach, &call.progress, points);
+        if (!status) status = swarf_surface_marks(surface, points, rows, &call.progress, out);
         if (!call_end(&call, state, status))
             result = buffer_view(state, values, out, "i", sizeof(int32_t), rows, 4, NULL);
     }

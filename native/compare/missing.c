@@ -20,8 +20,9 @@ static const double feature_error = 1;
 /* Share of the band from which on a value says no more than that the surface is beyond it. */
 static const double band_end = 0.98;
 
-/* Design points of one piece of work; slots along the edge of a block. */
-enum { PIECE = 1 << 12, BLOCK = 4 };
+/* Design points of one piece of work, few, for with a wide tolerance each may look at thousands of slots and a caller
+ * that cancels waits for a piece; slots along the edge of a block. */
+enum { PIECE = 1 << 8, BLOCK = 4 };
 
 /* Voxels along the edges of slots and blocks. Their points may lie a voxel before the upper end: in the gap to the
  * next.

@@ -12,9 +12,10 @@
 /* Clusters beyond these many are not worth a search of their own. */
 enum { MOST_CLUSTERS = 256, MOST_MOVES = sizeof((swarf_cluster *)0)->moves / sizeof(int64_t) };
 
-/* Cuts that differ by less than this many voxels at a place have both come as far: places on the stock's faces are as
- * exact as that. */
-static const double as_near = 0.02;
+/* Behind a gouge is the deepest cut, as well as places on the stock's faces are known: voxels by which others may
+ * differ. Of material left, mostly found on edges, cuts are as near that differ by less than some voxels, or a share of
+ * what is left, up to a voxel. */
+static const double as_deep = 0.02, least_near = 0.1, share_near = 0.25;
 
 struct moves_work {
     swarf_cluster *clusters;
@@ -58,12 +59,14 @@ static void take_move(swarf_cluster *cluster, int64_t move, double distance, dou
     if (cluster->move_count < MOST_MOVES) cluster->moves[cluster->move_count++] = move;
 }
 
-static swarf_status try_move(const struct moves_work *work, swarf_cluster *cluster, size_t move, double *best)
+/* Distance of a point to what a move sweeps, 0 in it; INFINITY where it sweeps nothing near. */
+static swarf_status distance_to(const struct moves_work *work, size_t move, const double point[3], double *distance)
 {
     const int32_t tool =
         swarf_program_sections(work->program)[swarf_move_get_section(&swarf_program_moves(work->program)[move])].tool;
     const swarf_cutter *cutter = find_cutter(work->tools, work->tool_count, tool);
     swarf_path path;
+    *distance = INFINITY;
     if (!cutter) return SWARF_OK;
     SWARF_TRY(swarf_program_path(work->program, move, &path));
     const double radius = swarf_cutter_radius(cutter, SWARF_PART_FLUTES);
@@ -71,11 +74,18 @@ static swarf_status try_move(const struct moves_work *work, swarf_cluster *clust
     double low, high;
     swarf_cutter_extent(cutter, SWARF_PART_FLUTES, &low, &high);
     const double wide = work->voxel + radius / 6; /* distances are right to three of these */
-    if (!may_reach(&path, cluster->place, radius, high, 3 * wide)) return SWARF_OK;
-    float distance;
-    SWARF_TRY(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, wide, cluster->place, 1, &distance));
-    if (distance < 2.99 * wide) take_move(cluster, (int64_t)move, fmax(distance, 0), as_near * work->voxel, best);
+    if (!may_reach(&path, point, radius, high, 3 * wide)) return SWARF_OK;
+    float value;
+    SWARF_TRY(swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, wide, point, 1, &value));
+    if (value < 2.99 * wide) *distance = fmax(value, 0);
     return SWARF_OK;
+}
+
+/* mm by which moves may differ at a place and have both come as far. */
+static double as_near(const struct moves_work *work, const swarf_cluster *cluster)
+{
+    if (!cluster->excess) return as_deep * work->voxel;
+    return fmax(least_near * work->voxel, fmin(share_near * cluster->value_mm, work->voxel));
 }
 
 /* Who cut first is behind a gouge: whoever came there later found nothing left. Of material left, who came last had the
@@ -86,14 +96,15 @@ static swarf_status find_for_cluster(void *context, size_t index)
     swarf_cluster *cluster = &work->clusters[index];
     const swarf_move *moves = swarf_program_moves(work->program);
     const size_t count = swarf_program_move_count(work->program);
-    double best = INFINITY;
+    const double near = as_near(work, cluster);
+    double best = INFINITY, distance;
     cluster->move_count = 0;
     for (int rapids = 0; rapids < 2 && cluster->move_count == 0; rapids++)
         for (size_t i = 0; i < count; i++) {
             const size_t move = cluster->excess ? count - 1 - i : i;
-            const int is_rapid = swarf_move_get_kind(&moves[move]) == SWARF_MOVE_RAPID;
-            if (cluster->excess && is_rapid != rapids) continue;
-            SWARF_TRY(try_move(work, cluster, move, &best));
+            if (cluster->excess && (swarf_move_get_kind(&moves[move]) == SWARF_MOVE_RAPID) != rapids) continue;
+            SWARF_TRY(distance_to(work, move, cluster->place, &distance));
+            if (distance < INFINITY) take_move(cluster, (int64_t)move, distance, near, &best);
         }
     cluster->away_mm = cluster->move_count ? best : 0;
     return SWARF_OK;

@@ -231,7 +231,7 @@ swarf_status swarf_solid_find_bounds(swarf_solid *solid, const swarf_progress *p
 {
     swarf_crossings crossings = {.first = NULL};
     const double middle = 0.5 * (from + to);
-    uint8_t *keep = malloc(solid->tree.count);
+    uint8_t *keep = calloc(solid->tree.count, 1);
     if (!keep) return swarf_fail(SWARF_ERROR_MEMORY, "solid: out of memory");
     swarf_status status = swarf_crossings_find(solid, progress, from, middle, &crossings);
     solid->facts.crossing_triangles = crossings.count;

@@ -6,6 +6,9 @@
  * What edges leave has a normal that is not the piece's own: it is told by that, and is no face of these kinds. */
 #include "surface/surface.h"
 
+#include "base/parallel.h"
+#include "base/status.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -81,4 +84,37 @@ swarf_face_kind swarf_surface_face(const swarf_surface *surface, const swarf_sur
     }
     if (move < 0) return surface->block ? SWARF_FACE_PLANE : SWARF_FACE_OTHER;
     return of_move(surface, (size_t)move, point, normal);
+}
+
+/* Points that one piece of work looks at. */
+enum { POINTS = 4096 };
+
+struct mark_work {
+    const swarf_surface *surface;
+    const swarf_surface_point *points;
+    size_t count;
+    swarf_surface_mark *out;
+};
+
+static swarf_status mark_points(void *context, size_t index)
+{
+    const struct mark_work *work = context;
+    const size_t end = (index + 1) * POINTS < work->count ? (index + 1) * POINTS : work->count;
+    for (size_t i = index * POINTS; i < end; i++) {
+        const swarf_surface_point *point = &work->points[i];
+        int set_up = 0;
+        int64_t move = -2;
+        if (point->move != -2) swarf_surface_origin(work->surface, point->move, &set_up, &move);
+        work->out[i] = (swarf_surface_mark){set_up, (int32_t)move, point->piece,
+                                            (int32_t)swarf_surface_face(work->surface, point)};
+    }
+    return SWARF_OK;
+}
+
+swarf_status swarf_surface_marks(const swarf_surface *surface, const swarf_surface_point *points, size_t count,
+                                 const swarf_progress *progress, swarf_surface_mark *out)
+{
+    SWARF_REQUIRE(surface && ((points && out) || count == 0), "surface: NULL");
+    struct mark_work work = {surface, points, count, out};
+    return swarf_parallel_for((count + POINTS - 1) / POINTS, mark_points, &work, progress, 0, 1);
 }

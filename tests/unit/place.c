@@ -307,6 +307,13 @@ static void check_pick(swarf_stock *turned, swarf_surface *surface, const swarf_
     swarf_scene_destroy(scene);
 }
 
+static int cancel_at_once(void *user, double fraction)
+{
+    (void)user;
+    (void)fraction;
+    return 1;
+}
+
 /* Turned over and cut again: every vertex of the mesh on the true surface of both set-ups, and it tells of which. */
 static void check_chain(const double angle[3], int lossless)
 {
@@ -352,11 +359,19 @@ static void check_chain(const double angle[3], int lossless)
     size_t seen[2] = {0}, shape = 0;
     swarf_surface_point *points = malloc((t.triangle_count + 1) * sizeof *points);
     CHECK_OK(swarf_mesh_origins(mesh, second, SIZE_MAX, 0, NULL, points));
+    swarf_surface_mark *marks = malloc((t.triangle_count + 1) * sizeof *marks);
+    const swarf_progress stop = {cancel_at_once, NULL};
+    CHECK_OK(swarf_progress_interval_set(0));
+    CHECK_FAILS(swarf_surface_marks(second, points, t.triangle_count, &stop, marks), SWARF_ERROR_CANCELLED, NULL);
+    CHECK_OK(swarf_surface_marks(second, points, t.triangle_count, NULL, marks));
     for (size_t i = 0; i < t.triangle_count; i++) {
         int set_up;
         int64_t move;
         swarf_surface_origin(second, points[i].move, &set_up, &move);
         CHECK(move >= -1 && (move == -1 ? set_up == 1 : set_up < 2 && move == 0));
+        const int known = points[i].move != -2;
+        CHECK(marks[i].set_up == (known ? set_up : 0) && marks[i].move == (known ? move : -2) &&
+              marks[i].piece == points[i].piece && marks[i].face == (int)swarf_surface_face(second, &points[i]));
         if (move == -1)
             shape++;
         else
@@ -364,6 +379,7 @@ static void check_chain(const double angle[3], int lossless)
     }
     CHECK(seen[0] > 3 && seen[1] > 3 && shape > 5);
     free(points);
+    free(marks);
     if (lossless) check_pick(turned, second, &over);
     swarf_mesh_release(mesh);
     swarf_surface_release(first);

@@ -103,7 +103,8 @@ SWARF_API swarf_status swarf_deviation_histogram(const swarf_deviation *deviatio
                                                  double *out);
 /** Find the moves behind each cluster's worst place: of a gouge those whose flutes pass through it, the first cut
  *  first; of an excess the feeds (where there is none, the rapids) that come nearest, within half a cutter and three
- *  voxels, the last cut first. Up to four that come as near. After SWARF_ERROR_CANCELLED clusters have any moves. */
+ *  voxels, the last cut first. Up to four that come about as near. After SWARF_ERROR_CANCELLED clusters have any moves.
+ */
 SWARF_API swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, const swarf_program *program,
                                                   const swarf_tool *tools, size_t tool_count,
                                                   const swarf_progress *progress);

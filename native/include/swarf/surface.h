@@ -63,6 +63,18 @@ typedef enum swarf_face_kind {
 /** What face a point of the surface is on, by the piece of the cutter and the move that made it. */
 SWARF_API swarf_face_kind swarf_surface_face(const swarf_surface *surface, const swarf_surface_point *point);
 
+/** What made a point and on what kind of face it lies. */
+typedef struct swarf_surface_mark {
+    int32_t set_up; /**< as of swarf_surface_origin() */
+    int32_t move;   /**< -1: the first shape; -2: not known */
+    int32_t piece;
+    int32_t face; /**< swarf_face_kind */
+} swarf_surface_mark;
+
+/** The marks of `count` points; SWARF_ERROR_ARGUMENT: NULL; SWARF_ERROR_CANCELLED. Any thread. */
+SWARF_API swarf_status swarf_surface_marks(const swarf_surface *surface, const swarf_surface_point *points,
+                                           size_t count, const swarf_progress *progress, swarf_surface_mark *out);
+
 /** What can matter within one small box: scratch of one thread. Keeps the surface alive. */
 typedef struct swarf_surface_near swarf_surface_near;
 SWARF_API swarf_status swarf_surface_near_create(const swarf_surface *surface, swarf_surface_near **out);
