@@ -3,6 +3,7 @@
 
 import os
 import shutil
+import subprocess
 import sys
 
 import pytest
@@ -13,6 +14,16 @@ sys.path.insert(0, os.path.join(ADDON, "freecad"))
 
 # These run inside FreeCAD, see CMakeLists.txt.
 collect_ignore = ["inside", "gui.py", "gui_panel.py", "gui_support.py"]
+
+
+def check_meshes(*paths):
+    """CGAL finds the meshes closed, oriented and free of triangles that cut each other ($SWARF_MESH_CHECK, which the
+    build sets where CGAL is; else nothing is checked)."""
+    program = os.environ.get("SWARF_MESH_CHECK")
+    if not program:
+        return
+    done = subprocess.run([program, *map(str, paths)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300)
+    assert done.returncode == 0, done.stdout.decode(errors="replace")
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, check_meshes
 from swarf_cam import reader
 
 
@@ -73,6 +73,7 @@ def test_simulate(example, swarf, tmp_path):
     assert removed["Drilling"] == pytest.approx(3.14159 * 2.5 ** 2 * 15, rel=0.01)
     assert removed["PeckDrilling"] == pytest.approx(2 * removed["Drilling"], rel=0.001)
     assert result["mesh"]["closed"]
+    check_meshes(tmp_path / "stock.stl")
 
 
 def test_two_sides(swarf, tmp_path):
@@ -91,3 +92,4 @@ def test_two_sides(swarf, tmp_path):
     mine, theirs = (swarf.Mesh.read(file) for file in (tmp_path / "part.stl", tmp_path / "result.stl"))
     assert mine.closed and mine.volume == pytest.approx(design, rel=3e-4)
     assert theirs.volume == pytest.approx(mine.volume, rel=1e-5)  # paths are saved with six decimals
+    check_meshes(tmp_path / "part.stl", tmp_path / "result.stl")
