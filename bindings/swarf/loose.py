@@ -64,22 +64,26 @@ class _Search:
         begin, end = (min(1.0, played / self._to_play) for played in (self._played, self._played + count))
         return share(self._progress, begin, end)
 
-    def between(self, stock: Stock, wanted: set[Lump], begin: int, end: int) -> None:
-        """The moves in begin .. end - 1 that free the wanted ones, which hang on a larger one before and on none after;
-        the stock has seen the moves before `begin`, and may be changed."""
-        if not wanted:
-            return
-        if end - begin == 1:
-            self.freed.update({lump: begin for lump in wanted})
-            return
-        middle = (begin + end) // 2
-        later = stock.copy()
-        later.simulate(self._job.program, self._job.tools, first=begin, count=middle - begin,
-                       progress=self._part(middle - begin))
-        self._played += middle - begin
-        apart = self.apart(later) & wanted
-        self.between(later, wanted - apart, middle, end)
-        self.between(stock, apart, begin, middle)
+    def run(self, left: list[tuple[Stock, set[Lump], int, int]]) -> None:
+        """Find who freed the lumps of each entry, and empty the list, so that no stock is held longer than it is looked
+        at: its lumps hang on a larger one before the moves begin .. end - 1, which the stock has not seen, and on none
+        after."""
+        while left:
+            stock, wanted, begin, end = left.pop()
+            if end - begin == 1:
+                self.freed.update({lump: begin for lump in wanted})
+                continue
+            middle = (begin + end) // 2
+            later = stock.copy()
+            later.simulate(self._job.program, self._job.tools, first=begin, count=middle - begin,
+                           progress=self._part(middle - begin))
+            self._played += middle - begin
+            apart = self.apart(later) & wanted
+            if apart:
+                left.append((stock, apart, begin, middle))
+            if wanted - apart:
+                left.append((later, wanted - apart, middle, end))
+            del stock, later
 
 
 def find(job: Job, left: Stock, make_first: Callable[[Report], Stock], progress: Report = None) -> LoosePieces:
@@ -93,7 +97,10 @@ def find(job: Job, left: Stock, make_first: Callable[[Report], Stock], progress:
     search = _Search(job, [lumps[0], *pieces], share(progress, 0.3, 1))
     freed = search.freed
     freed.update({lump: -1 for lump in search.apart(first)})
-    search.between(first, set(pieces) - set(freed), 0, len(job.program))
+    wanted = set(pieces) - set(freed)
+    waiting = [(first, wanted, 0, len(job.program))] if wanted else []
+    del first
+    search.run(waiting)
     found = [Loose(lump, freed[lump], *(operation_of(job, freed[lump]) if freed[lump] >= 0 else (None, 0)))
              for lump in pieces]
     return LoosePieces(found, len(lumps) - 1 - len(found))
