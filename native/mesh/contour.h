@@ -215,6 +215,10 @@ typedef struct contour_polygon {
  *  is a hundredth of the error that the mesh promises. */
 #define SWARF_CONTOUR_MARGIN 1e-4
 
+/** Where nothing else keeps facets from cutting each other, crossings stay this far from voxels, so that positions
+ *  rounded to floats keep apart; it is what the mesh promises. */
+#define SWARF_CONTOUR_LAST_MARGIN 1e-2
+
 /** Place the vertex of a cycle inside its cell; returns how many independent faces meet there (1 smooth, 2 on an edge,
  *  3 on a corner). */
 int swarf_contour_vertex(const contour_polygon *polygon, double out[3]);

@@ -165,9 +165,11 @@ swarf_status swarf_contour_join(contour *work, contour_block *block)
                 }
                 block->full_count += 2;
                 contour_vertex *centre = &centres[block->centre_count];
+                const double t =
+                    fmin(fmax((double)crossing->t, SWARF_CONTOUR_LAST_MARGIN), 1 - SWARF_CONTOUR_LAST_MARGIN);
                 for (int k = 0; k < 3; k++)
-                    centre->xyz[k] = (float)(work->layout->origin[k] +
-                                             (voxel[k] + (k == axis ? (double)crossing->t : 0)) * work->layout->voxel);
+                    centre->xyz[k] =
+                        (float)(work->layout->origin[k] + (voxel[k] + (k == axis ? t : 0)) * work->layout->voxel);
                 for (int k = 0; k < 4; k++)
                     put_facet(next + k, crossing, outwards, error, q[k].number, q[(k + 1) % 4].number,
                               SWARF_CENTRE | block->centre_count);

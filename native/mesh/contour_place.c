@@ -175,6 +175,10 @@ static int place_vertex(placing *p, const int at[3], int config, contour_polygon
     const int bit = at[1] * 8 + at[2];
     const int calm = (int)(block->calm_mask[at[0]] >> bit & 1), middle = (int)(block->middle_mask[at[0]] >> bit & 1);
     if (middle) {
+        for (int i = 0; i < polygon->count; i++) {
+            double *t = &polygon->point[i][polygon->edge[i] / 4];
+            *t = fmin(fmax(*t, SWARF_CONTOUR_LAST_MARGIN), 1 - SWARF_CONTOUR_LAST_MARGIN);
+        }
         place_middle(polygon, out);
         return 0;
     }

@@ -202,11 +202,16 @@ static swarf_status look_at_leaf(const tree *t, size_t own, size_t leaf, found *
     const size_t count = t->facets->facet_count;
     for (size_t i = own * LEAF; i < (own + 1) * LEAF && i < count; i++) {
         const uint32_t f = t->order[i];
+        int32_t p[3][3];
+        corners_of(t, f, p);
+        if (own == leaf && !swarf_triangle_has_area(p)) {
+            SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
+            out->pairs[out->count++] = (swarf_facet_pair){f, f};
+        }
         for (size_t k = own == leaf ? i + 1 : leaf * LEAF; k < (leaf + 1) * LEAF && k < count; k++) {
             if (apart(&t->own[i], &t->own[k])) continue;
-            int32_t p[3][3], q[3][3];
+            int32_t q[3][3];
             const uint32_t g = t->order[k];
-            corners_of(t, f, p);
             corners_of(t, g, q);
             if (!swarf_triangles_meet(p, t->facets->facet[f].v, q, t->facets->facet[g].v)) continue;
             SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));

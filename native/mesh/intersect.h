@@ -16,8 +16,8 @@ typedef struct swarf_facet_pair {
     uint32_t a, b;
 } swarf_facet_pair;
 
-/** All pairs, in an order that only depends on the facets; decided exactly. The facets must be
- *  snapped. *pairs is freed by the caller with free(). */
+/** All pairs, and each facet without area as a pair with itself, in an order that only depends on the facets; decided
+ * exactly. The facets must be snapped. *pairs is freed by the caller with free(). */
 swarf_status swarf_facets_intersect(const swarf_facets *facets, const swarf_progress *progress, double from, double to,
                                     swarf_facet_pair **pairs, size_t *count);
 

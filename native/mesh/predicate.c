@@ -129,3 +129,8 @@ int swarf_triangles_meet(const int32_t pa[3][3], const uint32_t a[3], const int3
             return 1;
     return 0;
 }
+
+int swarf_triangle_has_area(const int32_t p[3][3])
+{
+    return flat_axis(p) >= 0;
+}

@@ -9,4 +9,7 @@
  *  vertices and the edge they share. Triangles without area have none. */
 int swarf_triangles_meet(const int32_t pa[3][3], const uint32_t a[3], const int32_t pb[3][3], const uint32_t b[3]);
 
+/** Whether the corners do not lie on one line. */
+int swarf_triangle_has_area(const int32_t p[3][3]);
+
 #endif
