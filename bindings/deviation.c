@@ -85,7 +85,7 @@ static PyMethodDef solid_methods[] = {
 };
 
 static PyGetSetDef solid_getset[] = {
-    {"volume", solid_volume, NULL, "Volume, mm3; overlapping shells count twice.", NULL},
+    {"volume", solid_volume, NULL, "Volume, mm3; what shells have in common counts once.", NULL},
     {"bounding_box", solid_box, NULL, "((x, y, z), (x, y, z)) in mm.", NULL},
     {"triangle_count", solid_size, NULL, "Triangles that bound it.", FACT(triangle_count)},
     {"dropped_triangles", solid_size, NULL, "Degenerate, duplicate and inner triangles.", FACT(dropped_triangles)},

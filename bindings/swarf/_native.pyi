@@ -788,7 +788,7 @@ class Solid:
         """Signed distances (mm, negative inside, exact) of an (n, 3) table of points: read-only float64 view."""
     @property
     def volume(self) -> float:
-        """Volume, mm3; overlapping shells count twice."""
+        """Volume, mm3; what shells have in common counts once."""
     @property
     def bounding_box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """((x, y, z), (x, y, z)) in mm."""

@@ -5,14 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Long enough for two paths and a sentence; longer texts are cut, never overrun. */
-enum { TEXT_SIZE = 1024 };
-static _Thread_local char text[TEXT_SIZE];
+static _Thread_local char text[SWARF_ERROR_SIZE];
 
 /* Names in brackets: the header's macros of these names are not meant here. */
 swarf_status(swarf_fail)(swarf_status status, const char *format, ...)
 {
-    char fresh[TEXT_SIZE]; /* the arguments may point into the old text */
+    char fresh[SWARF_ERROR_SIZE]; /* the arguments may point into the old text */
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(fresh, sizeof fresh, format, arguments);
@@ -23,7 +21,7 @@ swarf_status(swarf_fail)(swarf_status status, const char *format, ...)
 
 swarf_status(swarf_fail_within)(swarf_status status, const char *format, ...)
 {
-    char prefix[TEXT_SIZE];
+    char prefix[SWARF_ERROR_SIZE];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(prefix, sizeof prefix, format, arguments);

@@ -9,6 +9,9 @@
 extern "C" {
 #endif
 
+/** Of a text with its end: two paths and a sentence. Longer ones are cut, never overrun. */
+enum { SWARF_ERROR_SIZE = 1024 };
+
 /** Keep a text for swarf_error_last() and return `status`: `return swarf_fail(SWARF_ERROR_IO, "...")`. */
 swarf_status swarf_fail(swarf_status status, const char *format, ...) SWARF_PRINTF(2, 3);
 

@@ -187,7 +187,8 @@ static swarf_status build_bounds(swarf_solid *solid, const uint8_t *keep, const 
     return SWARF_OK;
 }
 
-/* Volume and area by what bounds the solid: inner triangles count twice in the others' sum. */
+/* Volume and area by what bounds the solid: inner triangles count twice in the others' sum. The volume of an open one
+ * stays as it is: without what is inside, its holes would weigh more. */
 static void measure(swarf_solid *solid)
 {
     double volume = 0, area = 0;
@@ -199,7 +200,7 @@ static void measure(swarf_solid *solid)
         volume += height / 6;
         area += 0.5 * sqrt(square(normal));
     }
-    solid->facts.volume_mm3 = volume;
+    if (!solid->open) solid->facts.volume_mm3 = volume;
     solid->facts.area_mm2 = area;
 }
 
@@ -223,7 +224,7 @@ static swarf_status find_bounds(swarf_solid *solid, const swarf_crossings *cross
                             count);
     if (status == SWARF_OK) status = build_bounds(solid, keep, &pieces, count, progress, 0.7 * from + 0.3 * to, to);
     swarf_pieces_free(&pieces);
-    if (status == SWARF_OK && !solid->open) measure(solid);
+    if (status == SWARF_OK) measure(solid);
     return status;
 }
 

@@ -14,14 +14,21 @@
 /* Share of the gap by which the projections of triangles with a common corner may overlap. */
 static const double touching = 1e-3;
 
+/* Triangles with a common corner lie on top of each other or beside each other below this sine. */
+static const double least_sine = 0.01;
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /* Whether the projections of two triangles on an axis lie more than `gap` apart. */
 static int are_apart(double a[3][3], double b[3][3], const double axis[3], double gap)
 {
     double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
-    const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    const double length = sqrt(dot(axis, axis));
     for (int i = 0; i < 3; i++) {
-        const double at[2] = {a[i][0] * axis[0] + a[i][1] * axis[1] + a[i][2] * axis[2],
-                              b[i][0] * axis[0] + b[i][1] * axis[1] + b[i][2] * axis[2]};
+        const double at[2] = {dot(a[i], axis), dot(b[i], axis)};
         for (int k = 0; k < 2; k++) {
             lo[k] = at[k] < lo[k] ? at[k] : lo[k];
             hi[k] = at[k] > hi[k] ? at[k] : hi[k];
@@ -35,13 +42,13 @@ static void cross(const double u[3], const double v[3], double out[3])
     for (int k = 0; k < 3; k++) out[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
 }
 
-/* Whether all corners of a triangle are within `gap` of a plane through the origin. */
-static int lies_in(double p[3][3], const double normal[3], double gap)
+/* Whether two planes are one but for rounding, by their normals: it turns that of a small or thin triangle farthest. */
+static int are_parallel(const double normal_a[3], const double normal_b[3])
 {
-    const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    for (int i = 0; i < 3; i++)
-        if (fabs(p[i][0] * normal[0] + p[i][1] * normal[1] + p[i][2] * normal[2]) > gap * length) return 0;
-    return 1;
+    const double squares = dot(normal_a, normal_a) * dot(normal_b, normal_b);
+    double sine[3];
+    cross(normal_a, normal_b, sine);
+    return squares > 0 && dot(sine, sine) <= least_sine * least_sine * squares;
 }
 
 /* Separating axes: the two normals, across the edges in each plane, and the edges of both crossed. Triangles are apart
@@ -62,7 +69,7 @@ static int meet(const swarf_corners *first, const swarf_corners *second, double 
         }
     cross(edge_a[0], edge_a[1], normal_a);
     cross(edge_b[0], edge_b[1], normal_b);
-    const int flat = share && lies_in(b, normal_a, gap);
+    const int flat = share && are_parallel(normal_a, normal_b);
     const double least = share ? -touching * gap : gap;
     if (!flat && are_apart(a, b, normal_a, least)) return 0;
     if (!flat && are_apart(a, b, normal_b, least)) return 0;

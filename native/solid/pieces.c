@@ -44,6 +44,11 @@ struct node {
     uint32_t first, count;
 };
 
+/* A triangle that may cover pieces of another one, and a box about it. */
+struct cover {
+    double p[3][3], normal[3], lo[3], hi[3];
+};
+
 struct knife {
     const swarf_solid *solid;
     const swarf_crossings *crossings;
@@ -56,6 +61,8 @@ struct knife {
     size_t stack_room;
     uint32_t *order; /* of the triangles it meets */
     size_t order_room;
+    struct cover *covers;
+    size_t cover_count, cover_room;
 };
 
 static double dot(const double a[3], const double b[3])
@@ -283,24 +290,42 @@ static swarf_status cut_triangle(struct knife *knife)
 
 /* ---- what remains ---- */
 
-/* Whether a triangle that comes before this one covers a piece of it. */
+/* List the triangles that may cover pieces of this one: they come before it, in its plane, facing its way. */
+static swarf_status find_covers(struct knife *knife)
+{
+    const size_t first = knife->crossings->first[knife->place], end = knife->crossings->first[knife->place + 1];
+    knife->cover_count = 0;
+    SWARF_TRY(swarf_array_reserve((void **)&knife->covers, &knife->cover_room, end - first, sizeof *knife->covers));
+    for (size_t i = first; i < end; i++) {
+        const size_t other = knife->crossings->other[i];
+        if (other > knife->place) continue;
+        struct cover cover;
+        for (int j = 0; j < 9; j++) cover.p[j / 3][j % 3] = knife->solid->corners[other].xyz[j / 3][j % 3];
+        swarf_corners_normal(&knife->solid->corners[other], cover.normal);
+        if (!normalize(cover.normal) || dot(cover.normal, knife->normal) < least_true_cosine) continue;
+        for (int k = 0; k < 3; k++) {
+            cover.lo[k] = fmin(cover.p[0][k], fmin(cover.p[1][k], cover.p[2][k])) - 2 * knife->gap;
+            cover.hi[k] = fmax(cover.p[0][k], fmax(cover.p[1][k], cover.p[2][k])) + 2 * knife->gap;
+        }
+        knife->covers[knife->cover_count++] = cover;
+    }
+    return SWARF_OK;
+}
+
+/* Whether one of them covers a piece. */
 static int is_covered(const struct knife *knife, double p[3][3])
 {
     const double flush = same_plane * knife->gap;
-    for (size_t i = knife->crossings->first[knife->place]; i < knife->crossings->first[knife->place + 1]; i++) {
-        const size_t other = knife->crossings->other[i];
-        if (other > knife->place) continue;
-        double q[3][3], normal[3];
-        for (int j = 0; j < 9; j++) q[j / 3][j % 3] = knife->solid->corners[other].xyz[j / 3][j % 3];
-        swarf_corners_normal(&knife->solid->corners[other], normal);
-        if (!normalize(normal) || dot(normal, knife->normal) < least_true_cosine) continue;
+    for (size_t i = 0; i < knife->cover_count; i++) {
+        const struct cover *cover = &knife->covers[i];
         int covers = 1;
+        for (int k = 0; k < 3; k++) covers &= p[0][k] >= cover->lo[k] && p[0][k] <= cover->hi[k];
         for (int j = 0; j < 9 && covers; j++) {
             double edge[3], outwards[3];
-            for (int k = 0; k < 3; k++) edge[k] = q[(j / 3 + 1) % 3][k] - q[j / 3][k];
-            cross(edge, normal, outwards);
-            covers = normalize(outwards) && along(outwards, q[j / 3], p[j % 3]) <= knife->gap &&
-                     fabs(along(normal, q[0], p[j % 3])) <= flush;
+            for (int k = 0; k < 3; k++) edge[k] = cover->p[(j / 3 + 1) % 3][k] - cover->p[j / 3][k];
+            cross(edge, cover->normal, outwards);
+            covers = normalize(outwards) && along(outwards, cover->p[j / 3], p[j % 3]) <= knife->gap &&
+                     fabs(along(cover->normal, cover->p[0], p[j % 3])) <= flush;
         }
         if (covers) return 1;
     }
@@ -351,12 +376,14 @@ static swarf_status cut_places(void *context, size_t index)
         swarf_corners_normal(&work->solid->corners[knife.place], knife.normal);
         if (!normalize(knife.normal)) continue; /* a line bounds nothing */
         status = cut_triangle(&knife);
+        if (status == SWARF_OK) status = find_covers(&knife);
         for (size_t k = 0; k < knife.count && status == SWARF_OK; k++)
             if (knife.nodes[k].count == 0) status = take_piece(&knife, knife.nodes[k].p, &work->found[index]);
     }
     free(knife.nodes);
     free(knife.stack);
     free(knife.order);
+    free(knife.covers);
     return status;
 }
 

@@ -9,6 +9,7 @@
 #include "solid/angle.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -541,10 +542,15 @@ swarf_status swarf_shells_create(const swarf_triangles *triangles, double hole_s
     /* A triangle given twice by mistake is one too many; where two shells have it in common both need it. */
     const int open =
         status == SWARF_ERROR_GEOMETRY || (status == SWARF_OK && (shells.open_edges || shells.turned_edges));
-    if (doubled && open && make(triangles, 0, 1, &none, &other) == SWARF_OK) {
-        if (status == SWARF_OK) swarf_shells_free(&shells);
-        *out = other;
-        return SWARF_OK;
+    if (doubled && open) {
+        char text[SWARF_ERROR_SIZE];
+        snprintf(text, sizeof text, "%s", swarf_error_last());
+        if (make(triangles, 0, 1, &none, &other) == SWARF_OK) {
+            if (status == SWARF_OK) swarf_shells_free(&shells);
+            *out = other;
+            return SWARF_OK;
+        }
+        if (status != SWARF_OK) return swarf_fail(status, "%s", text); /* what is wrong with the mesh as it is */
     }
     if (status == SWARF_OK) *out = shells;
     return status;

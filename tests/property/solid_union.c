@@ -126,13 +126,21 @@ static void make_shape(const box_union *u, const double by[3][3], shape *s)
     }
 }
 
-/* Coordinates are sixteenths, so that floats hold them. On a coarse grid many faces are flush. */
+/* Coordinates are sixteenths, so that floats hold them. On a coarse grid many faces are flush, and on an uneven one
+ * small faces share corners with faces that are sixty times as long. */
 static void random_boxes(test_random *random, box_union *u)
 {
-    const int coarse = test_random_below(random, 2) != 0;
+    static const double uneven_grid[] = {0, 1, 1.5, 30, 60, 61};
+    const int coarse = test_random_below(random, 2) != 0, uneven = test_random_below(random, 3) == 0;
     u->count = 1 + (int)test_random_below(random, MOST_BOXES);
     for (int i = 0; i < u->count; i++)
         for (int k = 0; k < 3; k++) {
+            if (uneven) {
+                const size_t low = (size_t)test_random_below(random, 5);
+                u->box[i].lo[k] = uneven_grid[low];
+                u->box[i].hi[k] = uneven_grid[low + 1 + (size_t)test_random_below(random, 5 - low)];
+                continue;
+            }
             const double step = coarse ? 4 : 0.0625;
             const uint64_t steps = coarse ? 8 : 512;
             const double a = step * (double)test_random_below(random, steps);
@@ -185,8 +193,28 @@ static void check_facts(const box_union *u, const swarf_solid *solid, double tol
     CHECK_NEAR(facts.area_mm2, area, 400 * tolerance * u->count);
 }
 
+/* A ball with a hole inside a box: it bounds nothing, and the area is the box's. */
+static void check_open(void)
+{
+    const double lo[3] = {0, 0, 0}, hi[3] = {100, 100, 100}, centre[3] = {50, 50, 50};
+    shape s = {0};
+    swarf_solid *solid = NULL;
+    shape_box(&s, lo, hi);
+    shape_ball(&s, centre, 10, 20);
+    swarf_triangles triangles = shape_view(&s);
+    triangles.triangle_count--;
+    if (CHECK_OK(swarf_solid_create(&triangles, NULL, &solid))) {
+        const swarf_solid_facts facts = swarf_solid_get_facts(solid);
+        CHECK(facts.open_edges == 3 && facts.triangle_count == 12);
+        CHECK_NEAR(facts.area_mm2, 60000, 1e-6);
+    }
+    swarf_solid_release(solid);
+    shape_free(&s);
+}
+
 int main(void)
 {
+    check_open();
     const int rounds = test_size() == TEST_FULL ? 3000 : test_size() == TEST_LIGHT ? 20 : 300;
     test_random random = test_random_begin(11);
     for (int i = 0; i < rounds; i++) {
@@ -194,7 +222,7 @@ int main(void)
         shape s = {0};
         double by[3][3];
         const int turned = i % 2;
-        const double tolerance = turned ? 5e-5 : 1e-9; /* floats of up to 64 are off by 4e-6 */
+        const double tolerance = turned ? 5e-5 : 1e-9; /* floats of up to 106 are off by 4e-6 */
         random_boxes(&random, &u);
         random_turn(&random, turned, by);
         make_shape(&u, (const double(*)[3])by, &s);

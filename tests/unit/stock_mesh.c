@@ -219,6 +219,12 @@ static void check_refusals(void)
     CHECK_FAILS(swarf_stock_create_mesh(&triangles, &options, NULL, &stock), SWARF_ERROR_GEOMETRY, "3 open edges");
     triangles.triangle_count = 0;
     CHECK_FAILS(swarf_stock_create_mesh(&triangles, &options, NULL, &stock), SWARF_ERROR_GEOMETRY, "no triangles");
+    uint32_t kept[3];
+    triangles = shape_view(&s); /* one twice in place of another */
+    memcpy(kept, s.index + 33, sizeof kept);
+    memcpy(s.index + 33, s.index, sizeof kept);
+    CHECK_FAILS(swarf_stock_create_mesh(&triangles, &options, NULL, &stock), SWARF_ERROR_GEOMETRY, "3 open edges");
+    memcpy(s.index + 33, kept, sizeof kept);
     shape_flip(&s, 11);
     triangles = shape_view(&s);
     CHECK_FAILS(swarf_stock_create_mesh(&triangles, &options, NULL, &stock), SWARF_ERROR_GEOMETRY, "3 between");

@@ -38,8 +38,9 @@ typedef struct swarf_solid_facts {
 
 /** A solid from triangles (copied, welded by equal positions). Holes pass as long as their edges cannot bound more than
  *  a hundredth of the area; swarf_solid_get_facts() tells of them. SWARF_ERROR_GEOMETRY: no triangles, open beyond
- *  that, inside out, no volume, a cavity in no solid, a triangle that crosses a million others. SWARF_ERROR_ARGUMENT:
- * NULL, an index out of range, a coordinate that is not finite. The caller owns one reference. */
+ *  that, inside out, no volume, a cavity in no solid, a triangle that others cut into more than a million pieces.
+ *  SWARF_ERROR_ARGUMENT: NULL, an index out of range, a coordinate that is not finite. The caller owns one reference.
+ */
 SWARF_API swarf_status swarf_solid_create(const swarf_triangles *triangles, const swarf_progress *progress,
                                           swarf_solid **out);
 SWARF_API swarf_solid *swarf_solid_retain(swarf_solid *solid);
