@@ -324,6 +324,21 @@ typedef struct deviation_request {
     PyObject *region, *ignore, *program, *tools, *progress;
 } deviation_request;
 
+/* Measuring is nearly all of the work where moves are looked for too. */
+static const double measuring_share = 0.9;
+
+static int report_measuring(void *whole, double fraction)
+{
+    const swarf_progress *progress = whole;
+    return progress->fn(progress->user, measuring_share * fraction);
+}
+
+static int report_finding(void *whole, double fraction)
+{
+    const swarf_progress *progress = whole;
+    return progress->fn(progress->user, measuring_share + (1 - measuring_share) * fraction);
+}
+
 static PyObject *deviation_make(module_state *state, deviation_request *r)
 {
     swarf_deviation *handle = NULL;
@@ -331,12 +346,13 @@ static PyObject *deviation_make(module_state *state, deviation_request *r)
     native_call call;
     if (!borrowed_begin(state, r->region, r->ignore, r->program, r->tools, &r->options, &borrowed) &&
         !call_begin(&call, r->progress)) {
-        swarf_status status = r->stock
-                                  ? swarf_deviation_create(r->stock, r->design, &r->options, &call.progress, &handle)
-                                  : swarf_deviation_judge(r->measured, &r->options, &call.progress, &handle);
+        const swarf_progress parts[2] = {{report_measuring, &call.progress}, {report_finding, &call.progress}};
+        const swarf_progress *first = borrowed.program ? &parts[0] : &call.progress;
+        swarf_status status = r->stock ? swarf_deviation_create(r->stock, r->design, &r->options, first, &handle)
+                                       : swarf_deviation_judge(r->measured, &r->options, first, &handle);
         if (!status && borrowed.program)
-            status = swarf_deviation_find_moves(handle, borrowed.program, borrowed.tools, borrowed.tool_count,
-                                                &call.progress);
+            status =
+                swarf_deviation_find_moves(handle, borrowed.program, borrowed.tools, borrowed.tool_count, &parts[1]);
         if (call_end(&call, state, status)) {
             swarf_deviation_destroy(handle);
             handle = NULL;
