@@ -217,6 +217,13 @@ static swarf_status find_bounds(swarf_solid *solid, const swarf_crossings *cross
     for (size_t i = 0; i < pieces.count; i++)
         solid->facts.triangle_count += i == 0 || pieces.list[i].place != pieces.list[i - 1].place;
     const size_t count = kept + pieces.count;
+    size_t whole = kept;
+    for (size_t i = 0; i < pieces.count; i++) whole += (size_t)pieces.list[i].whole;
+    if (status == SWARF_OK && whole == solid->tree.count) { /* some touch others, yet all bound it as they are */
+        for (size_t i = 0; i < pieces.count; i++) solid->state[pieces.list[i].place] = SOLID_PIECE;
+        swarf_pieces_free(&pieces);
+        return SWARF_OK;
+    }
     if (status == SWARF_OK && count == 0)
         status = swarf_fail(SWARF_ERROR_GEOMETRY, "mesh: its triangles enclose nothing");
     if (status == SWARF_OK && count > UINT32_MAX / 3)

@@ -339,8 +339,15 @@ static __attribute__((noinline)) void round_corners(double p[3][3], swarf_corner
     for (int i = 0; i < 9; i++) out->xyz[i / 3][i % 3] = (float)p[i / 3][i % 3];
 }
 
-/* Add a piece to those that bound the solid, if it does. */
-static swarf_status take_piece(const struct knife *knife, double p[3][3], swarf_pieces *pieces)
+static swarf_status add_piece(swarf_pieces *pieces, const swarf_piece *piece)
+{
+    SWARF_TRY(swarf_array_reserve((void **)&pieces->list, &pieces->room, pieces->count + 1, sizeof *pieces->list));
+    pieces->list[pieces->count++] = *piece;
+    return SWARF_OK;
+}
+
+/* Add a piece to those that bound the solid, if it does; clear *whole if it does not, or from its other side. */
+static swarf_status take_piece(const struct knife *knife, double p[3][3], swarf_pieces *pieces, int *whole)
 {
     swarf_piece piece = {.place = (uint32_t)knife->place, .state = SOLID_SLIVER};
     double middle[3], normal[3];
@@ -349,11 +356,27 @@ static swarf_status take_piece(const struct knife *knife, double p[3][3], swarf_
     swarf_corners_normal(&piece.corners, normal);
     if (!normalize(normal)) return SWARF_OK;
     const int bounds = swarf_solid_bounds(knife->solid, middle, knife->normal);
-    if (bounds == 0 || is_covered(knife, p)) return SWARF_OK;
+    const int counts = bounds != 0 && !is_covered(knife, p);
+    if (!counts || bounds < 0) *whole = 0;
+    if (!counts) return SWARF_OK;
     if (bounds > 0 && dot(normal, knife->normal) > least_true_cosine) piece.state = SOLID_PIECE;
-    SWARF_TRY(swarf_array_reserve((void **)&pieces->list, &pieces->room, pieces->count + 1, sizeof *pieces->list));
-    pieces->list[pieces->count++] = piece;
-    return SWARF_OK;
+    return add_piece(pieces, &piece);
+}
+
+/* Add what bounds the solid of the triangle that was cut: all of it in one where each piece does. */
+static swarf_status take_pieces(const struct knife *knife, swarf_pieces *pieces)
+{
+    const size_t before = pieces->count;
+    const swarf_piece all = {.corners = knife->solid->corners[knife->place],
+                             .place = (uint32_t)knife->place,
+                             .state = SOLID_PIECE,
+                             .whole = 1};
+    int whole = 1;
+    for (size_t i = 0; i < knife->count; i++)
+        if (knife->nodes[i].count == 0) SWARF_TRY(take_piece(knife, knife->nodes[i].p, pieces, &whole));
+    if (!whole || pieces->count == before) return SWARF_OK;
+    pieces->count = before;
+    return add_piece(pieces, &all);
 }
 
 struct piece_work {
@@ -377,8 +400,7 @@ static swarf_status cut_places(void *context, size_t index)
         if (!normalize(knife.normal)) continue; /* a line bounds nothing */
         status = cut_triangle(&knife);
         if (status == SWARF_OK) status = find_covers(&knife);
-        for (size_t k = 0; k < knife.count && status == SWARF_OK; k++)
-            if (knife.nodes[k].count == 0) status = take_piece(&knife, knife.nodes[k].p, &work->found[index]);
+        if (status == SWARF_OK) status = take_pieces(&knife, &work->found[index]);
     }
     free(knife.nodes);
     free(knife.stack);

@@ -10,6 +10,7 @@ typedef struct swarf_piece {
     swarf_corners corners;
     uint32_t place; /* of the triangle in the tree of all */
     uint8_t state;  /* SOLID_PIECE or SOLID_SLIVER */
+    uint8_t whole;  /* 1: all of the triangle */
 } swarf_piece;
 
 typedef struct swarf_pieces {
