@@ -151,8 +151,9 @@ static swarf_status find_room(void *context, size_t row)
     return SWARF_OK;
 }
 
-swarf_status swarf_canvas_edges(swarf_canvas *c)
+swarf_status swarf_canvas_edges(swarf_canvas *c, const swarf_progress *progress, double from, double to)
 {
+    const double third = (to - from) / 3;
     const size_t rows = (size_t)c->height, squares = rows * (size_t)c->width;
     struct counting counting = {c, c->height / (2 * WINDOWS) + 1, malloc(squares * sizeof *counting.across)};
     c->edge = malloc(squares);
@@ -161,9 +162,9 @@ swarf_status swarf_canvas_edges(swarf_canvas *c)
     swarf_status status = counting.across && c->edge && c->outline && c->room
                               ? SWARF_OK
                               : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for edges");
-    if (status == SWARF_OK) status = swarf_parallel_for(rows, mark_row, c, NULL, 0, 1);
-    if (status == SWARF_OK) status = swarf_parallel_for(rows, count_across, &counting, NULL, 0, 1);
-    if (status == SWARF_OK) status = swarf_parallel_for(rows, find_room, &counting, NULL, 0, 1);
+    if (status == SWARF_OK) status = swarf_parallel_for(rows, mark_row, c, progress, from, from + third);
+    if (status == SWARF_OK) status = swarf_parallel_for(rows, count_across, &counting, progress, from + third, to - third);
+    if (status == SWARF_OK) status = swarf_parallel_for(rows, find_room, &counting, progress, to - third, to);
     free(counting.across);
     return status;
 }

@@ -2,8 +2,8 @@
 /* Shading the squares of a picture, with n x n samples for those that are rough: where a square and its eight
  * neighbours do not see one smooth face, and it shows: by a line, or by colours that differ.
  *
- * Strips of 64 rows one after the other, on all cores each. A strip keeps the samples of its rough squares and of the
- * row on either side, for a sample is on an edge when half a square away something else is seen:
+ * Strips of 64 rows one after the other, on all cores each. A strip keeps the samples of its rough squares and of two
+ * rows on either side, for a sample is on an edge when half a square away something else is seen that goes on beyond:
  *
  *   number   per square of the strip: of its samples, -1: smooth, its middle stands for all of it
  *   sample   n * n sights per rough square, a packet each
@@ -18,7 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STRIP = 64 };
+/* Of three samples, the last of a row looks four further, into the second row; of two or four into the next one. */
+enum { STRIP = 64, MARGIN = 2 };
 
 /* One face: neighbours' normals differ by at most 2.5 degrees, and each lies in the plane of the other to 1 in 20 of
  * their distance, so that steps of more than 1/20 pixel show. Larger values save rays and leave jagged edges. */
@@ -30,7 +31,7 @@ static const float same_colour = 4.0f / 255;
 typedef struct strip {
     swarf_canvas *canvas;
     const uint8_t *is_rough; /* per square of the canvas */
-    int32_t top, rows;       /* with a row more on either side where there is one */
+    int32_t top, rows;       /* with those of the margin on either side where there are any */
     int32_t own, end;        /* rows of the canvas whose colours are this strip's */
     int32_t *number;
     size_t *count; /* rough squares of a row, then those of the rows before it */
@@ -294,14 +295,14 @@ static swarf_status sample_strips(swarf_canvas *c, const uint8_t *is_rough, cons
                                   double to)
 {
     strip s = {.canvas = c, .is_rough = is_rough};
-    s.number = malloc((size_t)(STRIP + 2) * (size_t)c->width * sizeof *s.number);
-    s.count = malloc((STRIP + 3) * sizeof *s.count);
+    s.number = malloc((size_t)(STRIP + 2 * MARGIN) * (size_t)c->width * sizeof *s.number);
+    s.count = malloc((STRIP + 2 * MARGIN + 1) * sizeof *s.count);
     swarf_status status = s.number && s.count ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
     for (int32_t y = 0; status == SWARF_OK && y < c->height; y += STRIP) {
         s.own = y;
         s.end = y + STRIP < c->height ? y + STRIP : c->height;
-        s.top = y > 0 ? y - 1 : 0;
-        s.rows = (s.end < c->height ? s.end + 1 : s.end) - s.top;
+        s.top = y > MARGIN ? y - MARGIN : 0;
+        s.rows = (s.end + MARGIN < c->height ? s.end + MARGIN : c->height) - s.top;
         status = shade_strip(&s);
         free(s.rough);
         free(s.sample);
@@ -316,17 +317,21 @@ static swarf_status sample_strips(swarf_canvas *c, const uint8_t *is_rough, cons
 
 swarf_status swarf_canvas_shade(swarf_canvas *c, const swarf_progress *progress, double from, double to)
 {
+    /* The parts of the progress by what they cost. */
+    const int is_single = c->options->samples == 1;
+    const double shaded = from + (to - from) * (is_single ? 0.5 : 0.1);
+    const double marked = from + (to - from) * (is_single ? 0.9 : 0.2), judged = from + (to - from) * 0.25;
     const size_t rows = (size_t)c->height;
-    SWARF_TRY(swarf_parallel_for(rows, shade_row, c, NULL, 0, 1));
-    if (c->options->edges) SWARF_TRY(swarf_canvas_edges(c));
-    if (c->options->samples == 1) {
-        if (c->edge) SWARF_TRY(swarf_parallel_for(rows, draw_row_edges, c, NULL, 0, 1));
+    SWARF_TRY(swarf_parallel_for(rows, shade_row, c, progress, from, shaded));
+    if (c->options->edges) SWARF_TRY(swarf_canvas_edges(c, progress, shaded, marked));
+    if (is_single) {
+        if (c->edge) SWARF_TRY(swarf_parallel_for(rows, draw_row_edges, c, progress, marked, to));
         return swarf_progress_report(progress, to);
     }
     struct judging judging = {c, malloc(rows * (size_t)c->width)};
     if (!judging.is_rough) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
-    swarf_status status = swarf_parallel_for(rows, judge_row, &judging, NULL, 0, 1);
-    if (status == SWARF_OK) status = sample_strips(c, judging.is_rough, progress, from, to);
+    swarf_status status = swarf_parallel_for(rows, judge_row, &judging, progress, marked, judged);
+    if (status == SWARF_OK) status = sample_strips(c, judging.is_rough, progress, judged, to);
     free(judging.is_rough);
     return status;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Lines of a picture: the outline of a rounding, whose face turns away from the eye without an edge; steps that crowd,
- * whose lines are lighter than that of one alone; and one ray per pixel against nine. */
+ * whose lines are lighter than that of one alone; and one ray per pixel against nine. A fine groove has none on any row. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -100,9 +100,53 @@ static void check_crowd(void)
     swarf_stock_destroy(stock);
 }
 
+/** A groove less than half a pixel wide has no line wherever it lies, also where one strip of work ends. */
+static void check_rows(void)
+{
+    enum { W = 24, H = 160, RIM = 3, STEPS = 6 };
+    const swarf_box block = {{0, -4, 0}, {12, 4, 1}};
+    const double pixel = 0.5;
+    const swarf_path path = {.start = {-1, 0, 0.9}, .end = {13, 0, 0.9}, .has_motion = 1};
+    swarf_stock_options stock_options = swarf_stock_options_default();
+    swarf_picture_options options = swarf_picture_options_default();
+    swarf_stock *stock = NULL;
+    swarf_scene *scene = NULL;
+    swarf_cutter *cutter = NULL;
+    stock_options.voxel_mm = 0.02;
+    CHECK_OK(swarf_stock_create_box(&block, &stock_options, &stock));
+    CHECK_OK(swarf_cutter_parse("chamfer:d=2,l=2,a=90", &cutter));
+    CHECK_OK(swarf_stock_cut(stock, cutter, &path, 1, NULL));
+    swarf_cutter_release(cutter);
+    CHECK_OK(swarf_scene_create(stock, &scene));
+    options.width = W;
+    options.height = H;
+    options.occlusion = 0;
+    for (options.samples = 2; options.samples <= 4; options.samples++)
+        for (int place = 61 * STEPS; place < 67 * STEPS; place++) {
+            const int row = place / STEPS;
+            const double y = ((double)place / STEPS - 0.5 * H) * pixel;
+            const swarf_camera camera = {
+                .eye = {6, y, 100}, .target = {6, y, 0}, .up = {0, 1, 0}, .height_mm = H * pixel};
+            options.edges = 1;
+            CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, lines));
+            options.edges = 0;
+            CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, plain));
+            int most = 0;
+            for (int at = 0; at < 4 * W * H; at++) {
+                const int x = at / 4 % W;
+                if (x < RIM || x >= W - RIM || abs(at / 4 / W - row) > RIM) continue;
+                most = abs(plain[at] - lines[at]) > most ? abs(plain[at] - lines[at]) : most;
+            }
+            CHECK_NEAR(most, 0, 1);
+        }
+    swarf_scene_destroy(scene);
+    swarf_stock_destroy(stock);
+}
+
 int main(void)
 {
     check_outline();
     check_crowd();
+    check_rows();
     return test_end();
 }
