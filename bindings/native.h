@@ -170,6 +170,11 @@ extern PyStructSequence_Desc held_desc;
 
 /* ---- picture.c ---- */
 
+extern PyType_Spec picture_spec;
+/** A Picture as large as the options say, with memory for the buffers named in a sequence; fills `out` with where they
+ *  are. NULL with an exception. */
+PyObject *picture_create(module_state *state, const swarf_picture_options *options, PyObject *names,
+                         swarf_picture_buffers *out);
 extern const char stock_picture_doc[];
 PyObject *stock_picture(PyObject *self, PyObject *args, PyObject *keywords);
 extern const char stock_cast_doc[];
@@ -190,7 +195,6 @@ int camera_box(PyObject *box, swarf_box *out);
 /* ---- scene.c ---- */
 
 extern PyType_Spec scene_spec;
-extern PyType_Spec picture_spec;
 extern PyStructSequence_Desc pick_desc;
 
 /* ---- surface.c ---- */

@@ -163,7 +163,8 @@ swarf_status swarf_canvas_edges(swarf_canvas *c, const swarf_progress *progress,
                               ? SWARF_OK
                               : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for edges");
     if (status == SWARF_OK) status = swarf_parallel_for(rows, mark_row, c, progress, from, from + third);
-    if (status == SWARF_OK) status = swarf_parallel_for(rows, count_across, &counting, progress, from + third, to - third);
+    if (status == SWARF_OK)
+        status = swarf_parallel_for(rows, count_across, &counting, progress, from + third, to - third);
     if (status == SWARF_OK) status = swarf_parallel_for(rows, find_room, &counting, progress, to - third, to);
     free(counting.across);
     return status;

@@ -22,8 +22,8 @@ float swarf_edge_outline(float height);
 /** Darken a colour by an edge of a strength 0 .. 1. */
 void swarf_edge_draw(float colour[4], float strength);
 
-/** Allocate `edge`, `outline` and `room` of the canvas, which must be NULL, and fill them from its middles. Who made the
- *  canvas frees them, also after a failure. */
+/** Allocate `edge`, `outline` and `room` of the canvas, which must be NULL, and fill them from its middles. Who made
+ * the canvas frees them, also after a failure. */
 swarf_status swarf_canvas_edges(swarf_canvas *canvas, const swarf_progress *progress, double from, double to);
 
 #endif

@@ -356,15 +356,20 @@ static swarf_status sample_chunk(void *context, size_t index)
     return SWARF_OK;
 }
 
+swarf_status swarf_measure_samples(const swarf_stock *stock, const double *points, size_t count,
+                                   const swarf_progress *progress, float *out)
+{
+    for (size_t i = 0; i < 3 * count; i++)
+        SWARF_REQUIRE(isfinite(points[i]), "stock: coordinate %c of point %zu is not finite", "xyz"[i % 3], i / 3);
+    struct sampling work = {stock, points, out, count};
+    return swarf_parallel_for((count + SAMPLES_AT_ONCE - 1) / SAMPLES_AT_ONCE, sample_chunk, &work, progress, 0, 1);
+}
+
 swarf_status swarf_stock_sample(swarf_stock *stock, const double *points, size_t count, float *out)
 {
     SWARF_REQUIRE((points && out) || count == 0, "stock: points or output missing");
-    for (size_t i = 0; i < 3 * count; i++)
-        SWARF_REQUIRE(isfinite(points[i]), "stock: coordinate %c of point %zu is not finite", "xyz"[i % 3], i / 3);
     SWARF_TRY(swarf_stock_enter_read(stock));
-    struct sampling work = {stock, points, out, count};
-    const swarf_status status =
-        swarf_parallel_for((count + SAMPLES_AT_ONCE - 1) / SAMPLES_AT_ONCE, sample_chunk, &work, NULL, 0, 1);
+    const swarf_status status = swarf_measure_samples(stock, points, count, NULL, out);
     swarf_stock_leave(stock);
     return status;
 }

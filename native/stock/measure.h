@@ -15,4 +15,8 @@ swarf_status swarf_measure_volume(const swarf_stock *stock, double *out);
  *  up to a voxel too large; empty (lo > hi) where there is none. The stock has been entered. */
 swarf_status swarf_measure_reach(const swarf_stock *stock, swarf_box *out);
 
+/** swarf_stock_sample() of a stock that has been entered, with progress; `out` is written in part when it fails. */
+swarf_status swarf_measure_samples(const swarf_stock *stock, const double *points, size_t count,
+                                   const swarf_progress *progress, float *out);
+
 #endif

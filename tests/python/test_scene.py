@@ -208,6 +208,11 @@ def test_deviation_is_shown_where_the_stock_is_seen(stock):
     deep = swarf.Scene(swarf.Stock.box((0, 0, -10), (60, 40, -5), 0.5)).render(
         camera, 60, 40, samples=1, buffers=("rgba", "position", "seen"))
     assert deep.show_deviation(stock, 0.1)[20, 30] == math.inf
+    before_cancel = bytes(shown.rgba)
+    for progress in (lambda fraction: True, lambda fraction: 1 / 0):
+        with pytest.raises((swarf.Cancelled, ZeroDivisionError)):
+            shown.show_deviation(stock, 0.1, progress=progress)
+        assert bytes(shown.rgba) == before_cancel
     with pytest.raises(TypeError, match="Solid"):
         deep.show_deviation(camera, 0.1)
     at = 4 * (50 * 150 + 20)

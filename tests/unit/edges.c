@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Lines of a picture: the outline of a rounding, whose face turns away from the eye without an edge; steps that crowd,
- * whose lines are lighter than that of one alone; and one ray per pixel against nine. A fine groove has none on any row. */
+ * whose lines are lighter than that of one alone; and one ray per pixel against nine. A fine groove has none on any
+ * row. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -188,6 +188,42 @@ static void check_cancel(swarf_scene *scene, const swarf_box *box, test_random *
     free(rgba);
 }
 
+struct reports {
+    double last, gap;
+};
+
+static int note_report(void *user, double fraction)
+{
+    struct reports *reports = user;
+    CHECK(fraction >= reports->last);
+    if (fraction - reports->last > reports->gap) reports->gap = fraction - reports->last;
+    reports->last = fraction;
+    return 0;
+}
+
+/** No pass over the picture is long without a report, with one sample per pixel or nine. */
+static void check_progress(swarf_scene *scene, const swarf_box *box)
+{
+    static uint8_t rgba[4 * 320 * 256];
+    swarf_picture_options options = swarf_picture_options_default();
+    swarf_camera camera;
+    options.width = 320;
+    options.height = 256;
+    options.shadow = 1;
+    CHECK_OK(swarf_progress_interval_set(0));
+    CHECK_OK(swarf_threads_set(1));
+    CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 1, box, 1.25, &camera));
+    for (options.samples = 1; options.samples <= 3; options.samples += 2) {
+        struct reports reports = {0};
+        const swarf_progress progress = {note_report, &reports};
+        CHECK_OK(swarf_scene_picture(scene, &camera, &options, &progress, rgba));
+        CHECK(reports.last == 1);
+        CHECK(reports.gap < 0.2);
+    }
+    CHECK_OK(swarf_progress_interval_set(25));
+    CHECK_OK(swarf_threads_set(0));
+}
+
 /** Nothing left: a picture of the background alone. */
 static void check_empty(swarf_stock *stock)
 {
@@ -250,6 +286,7 @@ int main(void)
         check_background(scene, &box);
         check_refusals(scene, &box);
         check_cancel(scene, &box, &random);
+        check_progress(scene, &box);
     }
     swarf_scene_destroy(scene);
     if (stock) check_empty(stock);

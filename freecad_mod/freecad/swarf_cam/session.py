@@ -209,7 +209,9 @@ class Session:
         picture = self._design_scene.render(
             view.camera, view.width, view.height, buffers=("rgba", "depth", "position", "seen"), progress=progress,
             **{key: value for key, value in look.items() if key in self._keywords})
-        return picture, picture.show_deviation(self._stock, tolerance_mm) if tolerance_mm > 0 else None
+        if tolerance_mm <= 0:
+            return picture, None
+        return picture, picture.show_deviation(self._stock, tolerance_mm, progress=progress)
 
     def _compose(self, view, place, progress, **how):
         """(rgba, depth, values) of what a view shows."""

@@ -126,10 +126,11 @@ SWARF_API swarf_status swarf_deviation_pixels(const swarf_solid *design, const d
                                               size_t count, double allowance, const swarf_progress *progress,
                                               double *value);
 /** The same of a picture of the design: what the stock lacks or has too much where the design's surface is seen. Told
- * by the level set, to a hundredth of a voxel on faces; INFINITY or -INFINITY beyond its band of three voxels. One
- * thread in the stock. SWARF_ERROR_ARGUMENT, SWARF_ERROR_BUSY. */
+ * by the level set, to a hundredth of a voxel on faces; INFINITY or -INFINITY beyond its band of three voxels. All
+ * cores; one call at a time in the stock. SWARF_ERROR_ARGUMENT, SWARF_ERROR_BUSY. */
 SWARF_API swarf_status swarf_deviation_design_pixels(swarf_stock *stock, const double *position, const uint8_t *seen,
-                                                     size_t count, double allowance, double *value);
+                                                     size_t count, double allowance, const swarf_progress *progress,
+                                                     double *value);
 
 /** Tint `count` shaded pixels (RGBA, 8 bits, sRGB) by their deviations: green within +-tolerance, by yellow to red for
  *  material left and by cyan to blue for material missing at +-4 tolerances and beyond; NAN leaves a pixel as it is.
