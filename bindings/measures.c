@@ -46,7 +46,7 @@ static PyStructSequence_Field contour_fields[] = {
 
 PyStructSequence_Desc contour_desc = {
     .name = "swarf.Contour",
-    .doc = "What Mesh.from_stock() came to.",
+    .doc = "What Mesh.from_stock() or Mesh.stream() came to.",
     .fields = contour_fields,
     .n_in_sequence = 9,
 };

@@ -302,7 +302,7 @@ static PyMethodDef mesh_methods[] = {
      "stream($type, stock, path, error=0.0, *, surface=None, moves=None, memory_limit=0, progress=None)\n--\n\n"
      "The mesh of from_stock() straight to a binary .stl file; its Contour. One that would not fit into\n"
      "``memory_limit`` (bytes; 0: 80 % of what is free now) is made and written band by band along x, with small\n"
-     "triangles along the planes between them."},
+     "triangles along the planes between them; a pipe gets the whole one however much memory that takes."},
     {"write", WITH_KEYWORDS(mesh_write), METH_VARARGS | METH_KEYWORDS,
      "write($self, path, *, colors=None, progress=None)\n--\n\n"
      "Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure "

@@ -658,7 +658,7 @@ class Mesh:
     ) -> Contour:
         """The mesh of from_stock() straight to a binary .stl file; its Contour. One that would not fit into
         ``memory_limit`` (bytes; 0: 80 % of what is free now) is made and written band by band along x, with small
-        triangles along the planes between them."""
+        triangles along the planes between them; a pipe gets the whole one however much memory that takes."""
     def write(self, path: Path, *, colors: Optional[Table] = None, progress: Progress = None) -> None:
         """Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure
         loses nothing. ``colors`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."""
@@ -754,7 +754,7 @@ class Lump(NamedTuple):
     bounding_box: tuple[tuple[float, float, float], tuple[float, float, float]]
 
 class Contour(NamedTuple):
-    """What Mesh.from_stock() came to."""
+    """What Mesh.from_stock() or Mesh.stream() came to."""
 
     full_triangles: int
     triangles: int

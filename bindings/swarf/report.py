@@ -195,16 +195,21 @@ def _loads(done: Verification, names: list[str]) -> dict[str, Any]:
 
 
 def _mesh(result: Result) -> Optional[dict[str, Any]]:
-    mesh = result.mesh
+    """What is known of a mesh that was streamed: how many triangles, and that it is closed, as it would have failed."""
+    mesh, contour = result.mesh, result.contour
+    made = {
+        "error_mm": None if contour is None else contour.error_mm,
+        "intersections_left": None if contour is None else contour.intersections_left,
+    }
     if mesh is None:
-        return None
+        return None if contour is None else {"triangles": contour.triangles, "closed": True, **made}
     areas = None if result.surface is None else parts.faces(mesh, result.surface)
     return {
         "vertices": mesh.vertex_count,
         "triangles": mesh.triangle_count,
         "closed": mesh.closed,
         "volume_mm3": mesh.volume,
-        "error_mm": mesh.contour.error_mm if mesh.contour else None,
+        **made,
         "area_mm2_by_face": areas,
         "analytic_share": None if not areas or not mesh.area else 1 - areas["other"] / sum(areas.values()),
     }

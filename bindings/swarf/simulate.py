@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Sequence
 
 from . import colours, loose
-from ._native import Camera, Comparison, Mesh, Scene, Simulation, Stock, Surface, compare_volume
+from ._native import Camera, Comparison, Contour, Mesh, Scene, Simulation, Stock, Surface, compare_volume
 from .job import Job
 from .parts import largest
 from .stocks import DEFAULT_RESOLUTION, make_first, make_stock, stock_box, voxel_of
@@ -38,7 +38,8 @@ class Result:
     stock: Stock
     simulation: Simulation
     comparison: Optional[Comparison] = None
-    mesh: Optional[Mesh] = None
+    mesh: Optional[Mesh] = None  #: none where it was streamed to its file
+    contour: Optional[Contour] = None  #: what making the mesh came to, or streaming it; of all pieces
     seconds: dict[str, float] = field(default_factory=dict)
     before: list[tuple[Job, Simulation]] = field(default_factory=list)  #: of the set-ups before, the first one first
     surface: Optional[Surface] = None  #: exact, where a mesh was made
@@ -76,12 +77,13 @@ def simulate(
 
     Where the stock is what another job leaves, that is played first. ``voxel`` in mm, or ``resolution`` voxels along the
     stock's longest edge (512 unless told); ``batch`` as in Stock.simulate(). The stock is compared with the design when
-    the job has one. A mesh is made when ``mesh`` is true or an output needs it; for one .stl file alone it is streamed
-    there (Mesh.stream()). ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file.
-    ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by, deviations green within
-    ``tolerance`` of the design and ``allowance``, which is meant to be left on it (mm). Pieces that come loose are in
-    the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. Seconds of each stage
-    are in the result. Raises what the stages raise; nothing is written before the cutting is done.
+    the job has one. A mesh is made when ``mesh`` is true or an output needs it; where exactly one .stl file does, with
+    no ``colour`` and nothing dropped, it is streamed there (Mesh.stream()): then the result has its ``contour``, but no
+    mesh. ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file. ``colour`` (operation,
+    deviation, thickness) is what the mesh files are coloured by, deviations green within ``tolerance`` of the design and
+    ``allowance``, which is meant to be left on it (mm). Pieces that come loose are in the result, with the moves that
+    free them; ``drop_loose`` leaves them out of all that follows. Seconds of each stage are in the result. Raises what
+    the stages raise; nothing is written before the cutting is done.
     """
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")
@@ -119,6 +121,7 @@ def simulate(
     if exact is not None and not streamed:
         result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
                                                                    progress=report))
+        result.contour = result.mesh.contour
     if drop_loose and (result.loose.pieces or result.loose.crumbs):
         whole = Mesh.from_stock(stock) if result.mesh is None else result.mesh
         result.stock = stock = timed("mesh", lambda report: Stock.from_mesh(largest(whole), stock.voxel, progress=report))
@@ -135,8 +138,8 @@ def simulate(
             colour, result.mesh, exact, job, tolerance, progress=report, allowance=allowance))
     for path in outputs:
         if output_suffix(path) in MESH_SUFFIXES and streamed:
-            timed("mesh", lambda report: Mesh.stream(stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
-                                                     progress=report))
+            result.contour = timed("mesh", lambda report: Mesh.stream(
+                stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=exact, progress=report))
         elif output_suffix(path) in MESH_SUFFIXES:
             timed("write", lambda report: result.mesh.write(path, colors=tints, progress=report))
         else:

@@ -6,6 +6,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -130,19 +131,30 @@ static void forget(swarf_file_writer *writer)
     memset(writer, 0, sizeof *writer);
 }
 
-/* Why writing failed some time ago: trying again tells, and what is written then is thrown away. */
-static const char *reason_of(FILE *stream)
+/* Why writing failed some time ago. Trying again tells: a byte where it is thrown away then, nothing at all to a
+ * device; a pipe says whether anybody reads it. */
+static const char *reason_of(const swarf_file_writer *writer)
 {
-    clearerr(stream);
-    const int again = fputc(0, stream) == EOF || fflush(stream) != 0;
+    const int descriptor = fileno(writer->stream);
+    int again;
+    if (writer->temporary) {
+        clearerr(writer->stream);
+        again = fputc(0, writer->stream) == EOF || fflush(writer->stream) != 0;
+    } else {
+        again = write(descriptor, "", 0) < 0;
+        struct pollfd state = {.fd = descriptor};
+        if (!again && poll(&state, 1, 0) == 1 && state.revents & POLLERR) return strerror(EPIPE);
+    }
     return again ? strerror(errno) : "it failed a moment ago";
 }
 
 swarf_status swarf_file_commit(swarf_file_writer *writer)
 {
     swarf_status status = SWARF_OK;
-    if (fflush(writer->stream) != 0 || ferror(writer->stream))
-        status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", writer->path, reason_of(writer->stream));
+    if (fflush(writer->stream) != 0)
+        status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", writer->path, strerror(errno));
+    else if (ferror(writer->stream))
+        status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", writer->path, reason_of(writer));
     if (fclose(writer->stream) != 0 && status == SWARF_OK)
         status = swarf_fail(SWARF_ERROR_IO, "%s: cannot write: %s", writer->path, strerror(errno));
     if (status == SWARF_OK && writer->temporary) {

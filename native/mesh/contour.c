@@ -96,6 +96,7 @@ static swarf_status gather_one(void *context, size_t index)
     for (size_t f = 0; f < block->facet_count; f++) {
         swarf_facet facet = block->facets[f];
         facet.beyond = !swarf_contour_is_within(g->work, block, 0);
+        facet.before = g->work->band && block->ijk[0] > 0 && block->ijk[0] == g->work->band->first;
         for (int k = 0; k < 3; k++)
             if (facet.v[k] & SWARF_CENTRE)
                 facet.v[k] = (uint32_t)(g->vertices + block->centre_first + (facet.v[k] & ~SWARF_CENTRE));
@@ -249,32 +250,40 @@ typedef struct stage {
     swarf_contour_report *report;
 } stage;
 
-/* Pairs of facets that cut each other, those of two other bands aside. The facets stay, with all vertices; *left: pairs
- * that the next band will not see again. */
-static swarf_status find_pairs(const stage *s, int first, swarf_facet_pair **pairs, size_t *count, size_t *left)
+/* Pairs of facets that cut each other, and how many of them are counted here. */
+typedef struct found {
+    swarf_facet_pair *pairs;
+    size_t count;
+    size_t fresh; /* that the band before has not seen, those of the layer above among them */
+    size_t last;  /* that the next band will not see again */
+} found;
+
+/* Pairs of facets that cut each other, those of two other bands aside. The facets stay, with all vertices. */
+static swarf_status find_pairs(const stage *s, int first, found *out)
 {
     const contour_band *band = s->work->band;
     const size_t own = s->facets->facet_count;
     if (band && band->below.facet_count) SWARF_TRY(append_below(&band->below, s->facets));
-    const swarf_status status = swarf_facets_intersect(s->facets, first ? s->progress : NULL, 0.9, 0.98, pairs, count);
+    size_t all = 0;
+    const swarf_status status =
+        swarf_facets_intersect(s->facets, first ? s->progress : NULL, 0.9, 0.98, &out->pairs, &all);
     s->facets->facet_count = own;
     SWARF_TRY(status);
-    size_t kept = 0;
-    *left = 0;
-    for (size_t i = 0; i < *count; i++) {
-        const swarf_facet_pair pair = (*pairs)[i];
+    for (size_t i = 0; i < all; i++) {
+        const swarf_facet_pair pair = out->pairs[i];
         const int a = pair.a < own && !s->facets->facet[pair.a].beyond;
         const int b = pair.b < own && !s->facets->facet[pair.b].beyond;
+        out->fresh +=
+            (pair.a < own && !s->facets->facet[pair.a].before) || (pair.b < own && !s->facets->facet[pair.b].before);
         if (!a && !b) continue;
-        (*pairs)[kept++] = pair;
-        *left += (a || pair.a >= own) && (b || pair.b >= own);
+        out->pairs[out->count++] = pair;
+        out->last += (a || pair.a >= own) && (b || pair.b >= own);
     }
-    *count = kept;
     return SWARF_OK;
 }
 
 /* Join, simplify, look for facets that cut each other. */
-static swarf_status attempt(const stage *s, int first, swarf_facet_pair **pairs, size_t *count, size_t *left)
+static swarf_status attempt(const stage *s, int first, found *out)
 {
     contour *work = s->work;
     const double voxel = work->layout->voxel;
@@ -293,7 +302,7 @@ static swarf_status attempt(const stage *s, int first, swarf_facet_pair **pairs,
                               first ? s->progress : NULL, 0.7, 0.9);
     free(marks);
     SWARF_TRY(status);
-    return find_pairs(s, first, pairs, count, left);
+    return find_pairs(s, first, out);
 }
 
 /* Facets of blocks beside those whose vertices or tiles are others may be others too. Tiles look two cells about them,
@@ -336,15 +345,14 @@ static swarf_status settle(const stage *s)
 {
     contour *work = s->work;
     for (int round = 0;; round++) {
-        swarf_facet_pair *pairs = NULL;
-        size_t count = 0, left = 0;
+        found now = {0};
         SWARF_TRY(swarf_progress_report(s->progress, 0.6 + (round ? 0.39 : 0)));
-        SWARF_TRY(attempt(s, round == 0, &pairs, &count, &left));
-        if (round == 0) s->report->intersections_found += count;
-        for (size_t i = 0; i < count; i++) note_cells(work, s->facets, &pairs[i]);
-        free(pairs);
-        if (count == 0 || round == ATTEMPTS) {
-            s->report->intersections_left += left;
+        SWARF_TRY(attempt(s, round == 0, &now));
+        if (round == 0) s->report->intersections_found += now.fresh;
+        for (size_t i = 0; i < now.count; i++) note_cells(work, s->facets, &now.pairs[i]);
+        free(now.pairs);
+        if (now.count == 0 || round == ATTEMPTS) {
+            s->report->intersections_left += now.last;
             return SWARF_OK;
         }
         take_more_care(s);
@@ -428,7 +436,7 @@ static swarf_status make(contour *work, const swarf_contour_options *options, co
     return SWARF_OK;
 }
 
-swarf_status swarf_contour_begin(swarf_stock *stock, const swarf_contour_options *options, contour *out)
+swarf_status swarf_contour_check(const swarf_contour_options *options)
 {
     SWARF_REQUIRE(options && options->size == sizeof *options, "mesh: options missing or of another version");
     SWARF_REQUIRE(isfinite(options->error_mm) && options->error_mm >= 0, "mesh: error %g mm is not 0 or positive",
@@ -436,6 +444,12 @@ swarf_status swarf_contour_begin(swarf_stock *stock, const swarf_contour_options
     SWARF_REQUIRE(options->error_mm > 0 || !options->triangle_budget,
                   "mesh: a budget of %zu triangles needs an error (mm) that may be spent on it",
                   options->triangle_budget);
+    return SWARF_OK;
+}
+
+swarf_status swarf_contour_begin(swarf_stock *stock, const swarf_contour_options *options, contour *out)
+{
+    SWARF_TRY(swarf_contour_check(options));
     SWARF_TRY(swarf_stock_enter_read(stock));
     *out = (contour){.stock = stock,
                      .layout = swarf_tree_get_layout(stock->tree),

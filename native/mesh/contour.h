@@ -143,6 +143,8 @@ typedef struct contour {
     uint32_t *block_at; /* by node * 4096 + slot; UINT32_MAX: none */
 } contour;
 
+/** SWARF_ERROR_ARGUMENT: of another version, or they ask for what cannot be. */
+swarf_status swarf_contour_check(const swarf_contour_options *options);
 /** Check the options and enter the stock for reading; its caller leaves it. */
 swarf_status swarf_contour_begin(swarf_stock *stock, const swarf_contour_options *options, contour *out);
 /** Blocks that cells of the surface may lie in, those of the band and about it. */

@@ -82,7 +82,7 @@ static void put_facet(swarf_facet *facet, const contour_crossing *crossing, int 
     facet->v[2] = outwards ? c : b;
     facet->error_mm = error;
     for (int k = 0; k < 3; k++) facet->normal[k] = (int16_t)lrintf(crossing->normal[k] * 32767);
-    facet->beyond = 0;
+    facet->beyond = facet->before = 0;
 }
 
 /* Which diagonal cuts the quadrilateral: 0, 1, or -1 for all four triangles round its crossing. */

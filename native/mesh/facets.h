@@ -9,7 +9,8 @@ typedef struct swarf_facet {
     uint32_t v[3];
     float error_mm;    /* bound of the distance to the first triangles here */
     int16_t normal[3]; /* of the surface where the facet was made, * 32767 */
-    int16_t beyond;    /* 1: of the next band (see contour.h) */
+    int8_t beyond;     /* 1: of the next band (see contour.h) */
+    int8_t before;     /* 1: of the layer that was beyond in the band before */
 } swarf_facet;
 
 /** Vertices and facets of one surface. */

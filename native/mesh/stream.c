@@ -2,9 +2,9 @@
 /* A mesh that is never in memory as a whole: made band by band along x, each written as soon as it is finished.
  *
  *   band        voxels first .. end - 1; its facets are those of the edges that begin there
- *   handed on   the band's last layer of blocks, whose last cells have the vertices that both sides share, as it is;
- * and where care was taken in the one above it carried     its facets that reach into the next band, so that those do
- * not cut them
+ *   handed on   to the next band: the last layer of blocks as it is, as both sides share the vertices of its last
+ *               cells, and where care was taken in the layer above it
+ *   carried     to the next band: the facets that reach into it, so that its own do not cut them
  *
  * Whether what was written is closed is told by a sum over all directed edges of a number that is its own negative for
  * the edge turned round: it is 0 when every edge is there both ways. */
@@ -180,6 +180,24 @@ static swarf_status write_facets(streaming *s, const swarf_facets *facets)
     return status;
 }
 
+static swarf_status check_closed(const streaming *s)
+{
+    if (s->edges == 0) return SWARF_OK;
+    return swarf_fail(
+        SWARF_ERROR_GEOMETRY,
+        "mesh: the surface is not closed: the level set is cut off at its border or is no distance field");
+}
+
+/* One that is all of the stock is written with its count, so that nobody has to go back to where the file begins. */
+static swarf_status write_band(streaming *s, const swarf_facets *facets)
+{
+    if (!s->work.band) {
+        SWARF_TRY(check_closed(s));
+        SWARF_TRY(swarf_stl_write_header(facets->facet_count, s->stream));
+    }
+    return write_facets(s, facets);
+}
+
 static swarf_status make_band(streaming *s, const swarf_progress *progress)
 {
     contour *work = &s->work;
@@ -189,11 +207,11 @@ static swarf_status make_band(streaming *s, const swarf_progress *progress)
         take_over(s);
         status = swarf_contour_settle(work, s->options, progress, &facets, &s->report);
     }
-    if (status == SWARF_OK) status = write_facets(s, &facets);
     if (status == SWARF_OK) {
         add_edges(s, &facets);
-        status = carry(s, &facets);
+        status = write_band(s, &facets);
     }
+    if (status == SWARF_OK) status = carry(s, &facets);
     if (status == SWARF_OK) status = hand_on(s);
     swarf_facets_free(&facets);
     swarf_contour_clear(work);
@@ -228,6 +246,7 @@ static swarf_status make_bands(streaming *s, const swarf_progress *progress, int
     const int whole = width >= all;
     s->work.band = whole ? NULL : &s->band;
     s->band.step = step_of(s->work.layout);
+    if (!whole) SWARF_TRY(swarf_stl_write_header(0, s->stream));
     for (int32_t first = 0; first < all; first += width) {
         s->band.first = first;
         s->band.end = all - first < width ? all : first + width;
@@ -236,28 +255,28 @@ static swarf_status make_bands(streaming *s, const swarf_progress *progress, int
         SWARF_TRY(make_band(s, progress ? &part : NULL));
         if (ferror(s->stream)) return SWARF_OK; /* told when the file is closed */
     }
-    if (s->edges == 0) return swarf_stl_finish(s->stream, s->report.triangles);
-    return swarf_fail(
-        SWARF_ERROR_GEOMETRY,
-        "mesh: the surface is not closed: the level set is cut off at its border or is no distance field");
+    if (whole) return SWARF_OK;
+    SWARF_TRY(check_closed(s));
+    return swarf_stl_finish(s->stream, s->report.triangles);
 }
 
-/* All of the stock where the memory allows it. */
-static int32_t choose_width(const swarf_stock *stock, double error_mm, size_t memory_limit)
+/* All of the stock where the memory allows it, and where the count cannot be put before what is written already. */
+static int32_t choose_width(const swarf_stock *stock, double error_mm, size_t memory_limit, int can_seek)
 {
     size_t leaves, bytes;
     swarf_tree_size(stock->tree, &leaves, &bytes);
     const double limit = swarf_memory_limit(memory_limit), each = error_mm > 0 ? bytes_per_leaf : bytes_per_full_leaf,
                  needed = (double)leaves * each;
     const int32_t all = swarf_tree_get_layout(stock->tree)->count[0] * SWARF_NODE_DIM;
-    if (needed <= limit) return all;
+    if (needed <= limit || !can_seek) return all;
     return needed * WIDE / all <= limit ? WIDE : NARROW;
 }
 
 swarf_status swarf_mesh_stream(swarf_stock *stock, const swarf_contour_options *options, size_t memory_limit,
                                const char *path, const swarf_progress *progress, swarf_contour_report *report)
 {
-    SWARF_REQUIRE(stock && options && path, "mesh: NULL");
+    SWARF_REQUIRE(stock && path, "mesh: NULL");
+    SWARF_TRY(swarf_contour_check(options));
     SWARF_REQUIRE(!options->triangle_budget,
                   "mesh: a budget of %zu triangles needs the whole mesh, which is not streamed",
                   options->triangle_budget);
@@ -268,10 +287,10 @@ swarf_status swarf_mesh_stream(swarf_stock *stock, const swarf_contour_options *
     swarf_file_writer writer;
     SWARF_TRY(swarf_file_begin(path, &writer));
     s.stream = writer.stream;
+    const int can_seek = fseek(s.stream, 0, SEEK_SET) == 0;
     swarf_status status = swarf_contour_begin(stock, options, &s.work);
     if (status == SWARF_OK) {
-        status = swarf_stl_write_header(0, s.stream);
-        if (status == SWARF_OK) status = make_bands(&s, progress, choose_width(stock, options->error_mm, memory_limit));
+        status = make_bands(&s, progress, choose_width(stock, options->error_mm, memory_limit, can_seek));
         if (status == SWARF_OK) status = swarf_progress_report(progress, 1);
         drop_handed(&s);
         swarf_facets_free(&s.band.below);

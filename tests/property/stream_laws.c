@@ -113,6 +113,41 @@ static swarf_stock *plain_stock(void)
     return stock;
 }
 
+/* What thin cutters leave in all directions cuts itself in many places. Far from 0, where the positions of bands and of
+ * the whole are rounded alike, each pair is counted once, at the planes between bands too. */
+static void check_counts(test_random *random, const char *folder)
+{
+    char path[64];
+    snprintf(path, sizeof path, "%s/counted.stl", folder);
+    const swarf_box box = {{600, 0, -3}, {620, 3, 0}};
+    swarf_stock_options stock_options = swarf_stock_options_default();
+    stock_options.voxel_mm = 0.13;
+    swarf_stock *stock = NULL;
+    swarf_cutter *cutter = NULL;
+    if (!CHECK_OK(swarf_stock_create_box(&box, &stock_options, &stock))) return;
+    CHECK_OK(swarf_cutter_parse("ball:d=0.4,l=0.5", &cutter));
+    for (int i = 0; i < 500; i++) {
+        swarf_path path_of = {.has_motion = 1};
+        for (int k = 0; k < 3; k++) {
+            path_of.start[k] = test_random_in(random, box.lo[k], box.hi[k]);
+            path_of.end[k] = path_of.start[k] + test_random_in(random, -3, 3);
+        }
+        CHECK_OK(swarf_stock_cut(stock, cutter, &path_of, 1, NULL));
+    }
+    const swarf_contour_options options = swarf_contour_options_default();
+    swarf_contour_report whole, bands;
+    swarf_mesh *mesh = NULL;
+    if (CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &whole)) &&
+        CHECK_OK(swarf_mesh_stream(stock, &options, 1, path, NULL, &bands))) {
+        CHECK(whole.intersections_found > 100);
+        CHECK(bands.intersections_found == whole.intersections_found);
+    }
+    swarf_mesh_release(mesh);
+    swarf_cutter_release(cutter);
+    swarf_stock_destroy(stock);
+    unlink(path);
+}
+
 /* All ways to stream a stock against its whole mesh. */
 static void check_stock(swarf_stock *stock, const swarf_surface *surface, const char *folder)
 {
@@ -154,6 +189,10 @@ static void check_refused(swarf_stock *stock, const char *folder)
     options.triangle_budget = 100;
     CHECK_FAILS(swarf_mesh_stream(stock, &options, 1, path, NULL, NULL), SWARF_ERROR_ARGUMENT, "budget");
     options.triangle_budget = 0;
+    options.size--; /* nothing else of it is looked at then */
+    options.triangle_budget = 100;
+    CHECK_FAILS(swarf_mesh_stream(stock, &options, 1, path, NULL, NULL), SWARF_ERROR_ARGUMENT, "another version");
+    options = swarf_contour_options_default();
     CHECK_FAILS(swarf_mesh_stream(stock, &options, 1, "part.ply", NULL, NULL), SWARF_ERROR_ARGUMENT, ".stl");
     CHECK_FAILS(swarf_mesh_stream(stock, &options, 1, "/nowhere/part.stl", NULL, NULL), SWARF_ERROR_IO, "/nowhere");
     CHECK_FAILS(swarf_mesh_stream(NULL, &options, 1, path, NULL, NULL), SWARF_ERROR_ARGUMENT, NULL);
@@ -167,6 +206,7 @@ int main(void)
     char folder[] = "/tmp/swarf-stream-XXXXXX";
     if (!mkdtemp(folder)) return 1;
     swarf_stock *plain = plain_stock();
+    check_counts(&random, folder);
     if (plain) check_stock(plain, NULL, folder);
     static const int counts[] = {1, 2, 40};
     for (int i = 0; i < counts[test_size()]; i++) {

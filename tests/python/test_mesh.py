@@ -2,13 +2,16 @@
 """Meshes of stocks: measures, pieces, sections, colours and the formats, read back by other means."""
 import json
 import math
+import os
 import struct
+import threading
 import xml.etree.ElementTree as ElementTree
 import zipfile
 
 import pytest
 
 import swarf
+from swarf import report
 from swarf.cli import main
 
 VOXEL, ERROR = 0.2, 0.02
@@ -163,8 +166,6 @@ def test_stream(stock, tmp_path):
     assert part.closed and in_bands.closed and in_bands.volume == pytest.approx(part.volume, rel=1e-4)
     stock.write(tmp_path / "stock.vdb")
     assert main(["mesh", str(tmp_path / "stock.vdb"), "--error", str(ERROR), "--output", str(tmp_path / "told.stl")]) == 0
-    stock.write(tmp_path / "stock.vdb")
-    assert main(["mesh", str(tmp_path / "stock.vdb"), "--error", str(ERROR), "--output", str(tmp_path / "told.stl")]) == 0
     swarf.Mesh.from_stock(swarf.Stock.read(tmp_path / "stock.vdb"), ERROR).write(tmp_path / "whole.stl")
     assert (tmp_path / "told.stl").read_bytes() == (tmp_path / "whole.stl").read_bytes()
     with pytest.raises(ValueError, match="streamed to .stl only"):
@@ -173,6 +174,47 @@ def test_stream(stock, tmp_path):
         swarf.Mesh.stream(stock, tmp_path / "part.stl", memory_limit=-1)
     with pytest.raises(TypeError, match="surface"):
         swarf.Mesh.stream(stock, tmp_path / "part.stl", surface=1)
+
+
+def piped(path, write):
+    """What ``write()`` puts into a new pipe at ``path``, and what it returns."""
+    os.mkfifo(path)
+    got = []
+    reader = threading.Thread(target=lambda: got.append(path.read_bytes()))
+    reader.start()
+    made = write()
+    reader.join()
+    return got[0], made
+
+
+def test_stream_to_a_pipe(stock, tmp_path):
+    """The whole mesh, though there is hardly any memory: a pipe cannot go back to where the count stands."""
+    swarf.Mesh.from_stock(stock, ERROR).write(tmp_path / "whole.stl")
+    got, made = piped(tmp_path / "pipe.stl", lambda: swarf.Mesh.stream(stock, tmp_path / "pipe.stl", ERROR, memory_limit=1))
+    assert got == (tmp_path / "whole.stl").read_bytes() and len(got) == 84 + 50 * made.triangles
+
+
+def test_simulate_streams(tmp_path):
+    """To one .stl file alone, or a pipe of that name; the result says what it came to, as one with a mesh does."""
+    program = swarf.Program(start=(-5, 4, 5))
+    program.add_operation("slot")
+    program.set_section(tool=1)
+    program.add_line((-5, 4, -2))
+    program.add_line((25, 4, -2))
+    job = swarf.Job("part", program, {1: swarf.Cutter("flat:d=4,l=20")},
+                    stock={"kind": "box", "lo": (0, 0, -6), "hi": (20, 8, 0)})
+    two = [str(tmp_path / "one.stl"), str(tmp_path / "two.stl")]
+    kept = swarf.simulate(job, voxel=VOXEL, mesh=False, outputs=two)
+    assert kept.mesh is not None and kept.contour == kept.mesh.contour
+    got, done = piped(tmp_path / "pipe.stl", lambda: swarf.simulate(
+        job, voxel=VOXEL, mesh=False, outputs=[str(tmp_path / "pipe.stl")]))
+    assert done.mesh is None and done.contour == kept.contour and done.contour.intersections_left == 0
+    assert got == (tmp_path / "one.stl").read_bytes() == (tmp_path / "two.stl").read_bytes()
+    told, whole = (report.make(result, "part")["mesh"] for result in (done, kept))
+    assert told["triangles"] == kept.contour.triangles and told["intersections_left"] == 0
+    assert told.items() <= whole.items()
+    none = swarf.simulate(job, voxel=VOXEL, mesh=False)
+    assert none.contour is None and report.make(none, "part")["mesh"] is None
 
 
 def test_command(stock, tmp_path, capsys):

@@ -3,6 +3,7 @@
  * folders that are not there or are read-only, folders in the place of files. Each is one error that names the file;
  * what was there before stays, nothing half done is left beside it. */
 #include <dirent.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,6 +98,48 @@ static void check_device(int kind)
     CHECK(unlink(path) == 0);
 }
 
+static int reader = -1;
+
+static int close_reader(void *context, double fraction)
+{
+    (void)context;
+    if (fraction > 0.5 && reader >= 0) {
+        close(reader);
+        reader = -1;
+    }
+    return 0;
+}
+
+/* A pipe cannot go back to its count: it gets the whole mesh, byte for byte, however little memory there is. */
+static void check_pipe(void)
+{
+    char path[64], file_path[64];
+    static char piped[1 << 16], wanted[1 << 16]; /* no more than a pipe holds */
+    snprintf(path, sizeof path, "%s/pipe.stl", folder);
+    snprintf(file_path, sizeof file_path, "%s/file.stl", folder);
+    swarf_contour_options options = swarf_contour_options_default();
+    options.error_mm = 0.02;
+    swarf_contour_report report;
+    swarf_mesh *whole = NULL;
+    CHECK(mkfifo(path, 0600) == 0);
+    reader = open(path, O_RDONLY | O_NONBLOCK);
+    if (!CHECK(reader >= 0) || !CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &whole, &report))) return;
+    if (CHECK(84 + 50 * report.triangles < sizeof piped) &&
+        CHECK_OK(swarf_mesh_stream(stock, &options, 1, path, NULL, NULL))) {
+        CHECK_OK(swarf_mesh_write(whole, file_path, NULL));
+        FILE *file = fopen(file_path, "rb");
+        const size_t length = file ? fread(wanted, 1, sizeof wanted, file) : 0;
+        if (file) fclose(file);
+        CHECK(length == 84 + 50 * report.triangles);
+        CHECK(read(reader, piped, sizeof piped) == (ssize_t)length && memcmp(piped, wanted, length) == 0);
+        CHECK(unlink(file_path) == 0);
+    }
+    const swarf_progress progress = {close_reader, NULL};
+    CHECK_FAILS(swarf_mesh_stream(stock, &options, 1, path, &progress, NULL), SWARF_ERROR_IO, "Broken pipe");
+    CHECK(unlink(path) == 0);
+    swarf_mesh_release(whole);
+}
+
 static void check_folders(int kind)
 {
     const char *path = in_folder("folder.%s", kind);
@@ -121,6 +164,7 @@ int main(void)
     const swarf_contour_options contour = swarf_contour_options_default();
     options.voxel_mm = 0.2;
     signal(SIGXFSZ, SIG_IGN); /* a file at its limit is an error, as on a full disk */
+    signal(SIGPIPE, SIG_IGN); /* and so is a pipe that nobody reads any more */
     if (!mkdtemp(folder) || !CHECK_OK(swarf_stock_create_box(&box, &options, &stock)) ||
         !CHECK_OK(swarf_mesh_contour(stock, &contour, NULL, &mesh, NULL)))
         return test_end();
@@ -132,6 +176,7 @@ int main(void)
         check_device(kind);
         check_folders(kind);
     }
+    check_pipe();
     CHECK(count_files() == 0);
     swarf_mesh_release(mesh);
     swarf_stock_destroy(stock);

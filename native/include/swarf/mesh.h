@@ -57,8 +57,9 @@ SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contou
 /** The mesh of swarf_mesh_contour() straight to a binary .stl file. Where the whole mesh would not fit into
  *  memory_limit (bytes; 0: 80 % of what is free now) it is made and written band by band along x, of 256 or 64 voxels:
  *  then it needs the memory of a band beside the stock's, triangles stay small along the planes between bands, and all
- * else that swarf_mesh_contour() promises holds. Without a budget. SWARF_ERROR_ARGUMENT: another suffix, a budget, more
- *  triangles than the format can count; SWARF_ERROR_IO; those of swarf_mesh_contour(). `report` may be NULL. */
+ *  else that swarf_mesh_contour() promises holds. A pipe, where the count cannot be put in afterwards, gets the whole
+ *  mesh whatever the limit. Without a budget. SWARF_ERROR_ARGUMENT: another suffix, a budget, more triangles than the
+ *  format can count; SWARF_ERROR_IO; those of swarf_mesh_contour(). `report` may be NULL. */
 SWARF_API swarf_status swarf_mesh_stream(swarf_stock *stock, const swarf_contour_options *options, size_t memory_limit,
                                          const char *path, const swarf_progress *progress,
                                          swarf_contour_report *report);
