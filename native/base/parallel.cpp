@@ -167,6 +167,17 @@ extern "C" swarf_status swarf_progress_report(const swarf_progress *progress, do
     return SWARF_OK;
 }
 
+static int report_share(void *context, double fraction)
+{
+    const auto *share = static_cast<const swarf_progress_share *>(context);
+    return share->whole->fn(share->whole->user, share->from + (share->to - share->from) * fraction);
+}
+
+extern "C" swarf_progress swarf_progress_part(swarf_progress_share *share)
+{
+    return {report_share, share};
+}
+
 extern "C" swarf_status swarf_parallel_for(size_t count, swarf_work_fn work, void *context,
                                            const swarf_progress *progress, double from, double to)
 {

@@ -24,6 +24,15 @@ int swarf_parallel_slot(void);
 /** Report progress from the calling thread; SWARF_ERROR_CANCELLED when the caller wants to stop. */
 swarf_status swarf_progress_report(const swarf_progress *progress, double fraction);
 
+/** A part of a longer work: its 0 .. 1 is from .. to of the whole. */
+typedef struct swarf_progress_share {
+    const swarf_progress *whole; /**< not NULL when it is reported to */
+    double from, to;
+} swarf_progress_share;
+
+/** Progress of the part, for as long as *share lives. */
+swarf_progress swarf_progress_part(swarf_progress_share *share);
+
 #ifdef __cplusplus
 }
 #endif

@@ -3,6 +3,7 @@
  * by the mesh: its vertices are turned, and the new voxels get their exact distance to it, so that edges stay edges.
  * Interpolating the old voxels would round them: half way between four voxels round an edge, trilinear values are a
  * quarter of a voxel off. */
+#include "base/parallel.h"
 #include "base/placement.h"
 #include "base/status.h"
 #include "mesh/mesh.h"
@@ -18,17 +19,6 @@ static const double mesh_error = 0.01, field_error = 0.04;
 swarf_place_options swarf_place_options_default(void)
 {
     return (swarf_place_options){.size = sizeof(swarf_place_options)};
-}
-
-struct share {
-    const swarf_progress *progress;
-    double from, to;
-};
-
-static int report_share(void *context, double fraction)
-{
-    const struct share *share = context;
-    return share->progress->fn(share->progress->user, share->from + (share->to - share->from) * fraction);
 }
 
 swarf_status swarf_mesh_create_placed(const swarf_mesh *mesh, const swarf_placement *placement, swarf_mesh **out)
@@ -79,9 +69,9 @@ static swarf_status turn_mesh(const swarf_mesh *mesh, const swarf_placement *pla
 static swarf_status place_by_mesh(swarf_stock *stock, const swarf_placement *placement, double voxel,
                                   const swarf_place_options *options, const swarf_progress *progress, swarf_stock **out)
 {
-    struct share first = {progress, 0, 0.5}, second = {progress, 0.5, 0.95}, third = {progress, 0.95, 1};
-    const swarf_progress contouring = {report_share, &first}, filling = {report_share, &second},
-                         moving = {report_share, &third};
+    swarf_progress_share shares[3] = {{progress, 0, 0.5}, {progress, 0.5, 0.95}, {progress, 0.95, 1}};
+    const swarf_progress contouring = swarf_progress_part(&shares[0]), filling = swarf_progress_part(&shares[1]),
+                         moving = swarf_progress_part(&shares[2]);
     swarf_contour_options wanted = swarf_contour_options_default();
     wanted.error_mm = (options->surface ? mesh_error : field_error) * fmin(voxel, swarf_stock_voxel(stock));
     wanted.surface = options->surface;

@@ -218,17 +218,6 @@ static swarf_status make_band(streaming *s, const swarf_progress *progress)
     return status;
 }
 
-struct share {
-    const swarf_progress *progress;
-    double from, to;
-};
-
-static int report_share(void *context, double fraction)
-{
-    const struct share *share = context;
-    return share->progress->fn(share->progress->user, share->from + (share->to - share->from) * fraction);
-}
-
 /* What positions of all bands are rounded to: enough for the farthest corner of the voxels. */
 static double step_of(const swarf_tree_layout *layout)
 {
@@ -250,8 +239,8 @@ static swarf_status make_bands(streaming *s, const swarf_progress *progress, int
     for (int32_t first = 0; first < all; first += width) {
         s->band.first = first;
         s->band.end = all - first < width ? all : first + width;
-        struct share share = {progress, (double)first / all, (double)s->band.end / all};
-        const swarf_progress part = {report_share, &share};
+        swarf_progress_share share = {progress, (double)first / all, (double)s->band.end / all};
+        const swarf_progress part = swarf_progress_part(&share);
         SWARF_TRY(make_band(s, progress ? &part : NULL));
         if (ferror(s->stream)) return SWARF_OK; /* told when the file is closed */
     }

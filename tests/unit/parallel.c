@@ -142,6 +142,26 @@ static void check_sharing(void)
     CHECK(atomic_load(&here) == 400 && atomic_load(&beside) == 400);
 }
 
+static int note(void *user, double fraction)
+{
+    *(double *)user = fraction;
+    return fraction > 0.5;
+}
+
+static void check_share(void)
+{
+    double told = -1;
+    const swarf_progress whole = {note, &told};
+    swarf_progress_share share = {&whole, 0.25, 0.75};
+    const swarf_progress part = swarf_progress_part(&share);
+    CHECK_OK(swarf_progress_report(&part, 0));
+    CHECK_NEAR(told, 0.25, 1e-15);
+    CHECK_OK(swarf_progress_report(&part, 0.5));
+    CHECK_NEAR(told, 0.5, 1e-15);
+    CHECK_FAILS(swarf_progress_report(&part, 1), SWARF_ERROR_CANCELLED, "cancelled");
+    CHECK_NEAR(told, 0.75, 1e-15);
+}
+
 int main(void)
 {
     static const int threads[] = {1, 2, 3, 8};
@@ -151,5 +171,6 @@ int main(void)
         check_progress(threads[i]);
     }
     check_sharing();
+    check_share();
     return test_end();
 }

@@ -126,8 +126,9 @@ SWARF_API swarf_status swarf_deviation_pixels(const swarf_solid *design, const d
                                               size_t count, double allowance, const swarf_progress *progress,
                                               double *value);
 /** The same of a picture of the design: what the stock lacks or has too much where the design's surface is seen. Told
- * by the level set, to a hundredth of a voxel on faces; INFINITY or -INFINITY beyond its band of three voxels. All
- * cores; one call at a time in the stock. SWARF_ERROR_ARGUMENT, SWARF_ERROR_BUSY. */
+ *  by the level set, on faces to a hundredth of a voxel up to two voxels and to a fifth beyond; INFINITY or -INFINITY
+ *  beyond its band of three. All cores; one call at a time in the stock. SWARF_ERROR_ARGUMENT, SWARF_ERROR_BUSY,
+ *  SWARF_ERROR_CANCELLED. */
 SWARF_API swarf_status swarf_deviation_design_pixels(swarf_stock *stock, const double *position, const uint8_t *seen,
                                                      size_t count, double allowance, const swarf_progress *progress,
                                                      double *value);
