@@ -4,8 +4,8 @@
  *
  * "forward" goes from the first move to the last; "plain" cuts the same batches without keeping anything, so that the
  * difference is what recording costs; "whole" cuts all moves at once. Then from the end: "back_1000" in one call,
- * "again_1000" forward to the end, "singles_1000" one move back a thousand times, "start" back to before the first
- * move.
+ * "again_1000" forward to the end, "back_singles" one move back a thousand times, "forward_singles" as many forward
+ * again, "start" back to before the first move.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,9 +14,9 @@
 
 enum { MOST_REPEATS = 99, STEPS = 1000, MOST_TOOLS = 64 };
 
-enum { WHOLE, PLAIN, FORWARD, BACK, AGAIN, SINGLES, START, TIMES };
-static const char *const names[TIMES] = {"whole",      "plain",        "forward", "back_1000",
-                                         "again_1000", "singles_1000", "start"};
+enum { WHOLE, PLAIN, FORWARD, BACK, AGAIN, BACK_SINGLES, FORWARD_SINGLES, START, TIMES };
+static const char *const names[TIMES] = {"whole",      "plain",        "forward",         "back_1000",
+                                         "again_1000", "back_singles", "forward_singles", "start"};
 
 struct bench {
     swarf_program *program;
@@ -72,7 +72,7 @@ static void cut_plainly(const struct bench *bench, swarf_stock *stock)
     for (size_t begin = 0; begin < bench->moves;) {
         size_t end = begin + 1;
         while (end < bench->moves && tool_of(bench, end) == tool_of(bench, begin)) end++;
-        for (size_t size = 4096; size; size /= 2)
+        for (size_t size = 4096; size; size /= 8)
             for (; end - begin >= size; begin += size) cut(bench, stock, begin, begin + size);
     }
 }
@@ -95,13 +95,14 @@ static void run(struct bench *bench, double times[TIMES])
     swarf_history_options options = swarf_history_options_default();
     options.memory_limit = bench->limit;
     bench_must(swarf_history_create(stock, bench->program, bench->tools, bench->tool_count, &options, &history));
-    const size_t targets[] = {bench->moves, bench->moves - STEPS, bench->moves, 0, 0};
+    const size_t moves = bench->moves, targets[] = {moves, moves - STEPS, moves, moves - STEPS, moves, 0};
     for (int i = FORWARD; i < TIMES; i++) {
         began = bench_now();
-        if (i == SINGLES)
-            for (size_t k = 1; k <= STEPS; k++) bench_must(swarf_history_seek(history, bench->moves - k, 0, NULL));
-        else
-            bench_must(swarf_history_seek(history, targets[i - FORWARD], 0, NULL));
+        const size_t target = targets[i - FORWARD];
+        const int singles = i == BACK_SINGLES ? -1 : i == FORWARD_SINGLES;
+        for (size_t left = singles ? STEPS - 1 : 0; left; left--)
+            bench_must(swarf_history_seek(history, singles < 0 ? target + left : target - left, 0, NULL));
+        bench_must(swarf_history_seek(history, target, 0, NULL));
         times[i] = bench_now() - began;
         if (i == FORWARD) bench->held = swarf_history_get_held(history);
     }

@@ -2,7 +2,7 @@
 /* History: a stock that can stand at any move of a program, forward by cutting, back by undoing.
  *
  * A position is the number of moves that are done, and the part of the next one that is. Moves are cut in batches whose
- * limits depend on the program and the position only: powers of 2 counted from where the tool was last changed, as
+ * limits depend on the program and the position only: powers of 8 counted from where the tool was last changed, as
  * large as fit, at most 4096. So a position has one content, to the bit, whichever way it is reached and whatever the
  * number of threads: swarf_stock_hash() is that of a new history that goes there at once. A stock that is cut in other
  * batches (swarf_stock_simulate()) has the same surface, but values beside it may differ.
