@@ -155,7 +155,10 @@ static swarf_status cut_leaf(const struct cut_work *work, struct touch *touch, c
     const int32_t corner[3] = {x * SWARF_LEAF_DIM, y * SWARF_LEAF_DIM, z * SWARF_LEAF_DIM};
     _Alignas(64) float fresh[SWARF_LEAF_SIZE];
     float *stored = swarf_tree_leaf(work->stock->tree, place.node, place.slot);
-    swarf_leaf_cut cut = {.voxel = (float)layout->voxel, .background = layout->background};
+    swarf_leaf_cut cut; /* an initializer would clear it all, which takes as long as a tenth of the cut */
+    cut.voxel = (float)layout->voxel;
+    cut.background = layout->background;
+    cut.solid = 0;
     cut.x = (float)(corner[0] - column->middle[0]);
     cut.y = (float)(corner[1] - column->middle[1]);
     cut.z = (float)(corner[2] - column->middle[2]);

@@ -15,7 +15,8 @@ constexpr size_t huge_page = size_t(2) << 20;
 unsigned thread_number() noexcept
 {
     static std::atomic<unsigned> threads{0};
-    thread_local const unsigned number = threads.fetch_add(1, std::memory_order_relaxed);
+    static thread_local unsigned number; /* from 1 on; 0: none yet */
+    if (number == 0) number = threads.fetch_add(1, std::memory_order_relaxed) + 1;
     return number;
 }
 
@@ -32,6 +33,13 @@ char *map_aligned(size_t bytes)
     munmap(raw + before + bytes, huge_page - before);
     madvise(raw + before, bytes, MADV_HUGEPAGE); /* where the kernel has none, small pages do */
     return raw + before;
+}
+
+/* Have the processor fetch a cell that will be written. */
+void fetch(const void *cell) noexcept
+{
+    const char *const begin = static_cast<const char *>(cell);
+    for (size_t i = 0; i < swarf_slab::cell_bytes; i += 64) __builtin_prefetch(begin + i, 1);
 }
 
 } // namespace
@@ -54,75 +62,71 @@ void swarf_slab::add_region()
     const int count = region_count_.load(std::memory_order_relaxed);
     if (count == most_regions) throw std::bad_alloc();
     const size_t bytes = std::min(largest_region, first_region << std::min(count, 16));
+    cells_ += bytes / cell_bytes;
+    shared_.reserve(cells_);
     char *const begin = map_aligned(bytes);
     regions_[count].bytes = bytes;
     regions_[count].begin.store(begin, std::memory_order_relaxed);
     region_count_.store(count + 1, std::memory_order_release);
     next_ = begin;
-    end_ = begin + bytes;
+    end_ = begin + bytes / cell_bytes * cell_bytes;
 }
 
-/* A shelf is empty: buffers that others gave back first, then fresh ones. */
+/* A shelf is empty: cells that others gave back first, then fresh ones. */
 void swarf_slab::refill(shelf &own)
 {
     const std::lock_guard<std::mutex> lock(mutex_);
-    for (size_t i = 0; i < batch && shared_; i++) {
-        free_buffer *const buffer = shared_;
-        shared_ = buffer->next;
-        buffer->next = own.free;
-        own.free = buffer;
-        own.count++;
-    }
-    if (own.free) return;
+    const size_t given = std::min(batch, shared_.size());
+    std::copy(shared_.end() - static_cast<std::ptrdiff_t>(given), shared_.end(), own.free);
+    shared_.resize(shared_.size() - given);
+    own.count = given;
+    if (given > 0) return;
     if (next_ == end_) add_region();
     own.fresh = next_;
-    own.fresh_end = next_ = next_ + batch * buffer_bytes;
+    own.fresh_end = next_ = next_ + std::min(batch * cell_bytes, static_cast<size_t>(end_ - next_));
 }
 
+/* A shelf is full: the half that lies longest, and is least in the caches, to the others. */
 void swarf_slab::spill(shelf &own) noexcept
 {
     const std::lock_guard<std::mutex> lock(mutex_);
-    for (; own.count > most_on_shelf / 2; own.count--) {
-        free_buffer *const buffer = own.free;
-        own.free = buffer->next;
-        buffer->next = shared_;
-        shared_ = buffer;
-    }
+    void **const middle = own.free + most_on_shelf / 2;
+    shared_.insert(shared_.end(), own.free, middle); /* there is room: add_region() */
+    own.count = static_cast<size_t>(std::copy(middle, own.free + own.count, own.free) - own.free);
 }
 
-float *swarf_slab::take()
+void *swarf_slab::take()
 {
     shelf &own = enter();
     try {
-        if (!own.free && own.fresh == own.fresh_end) refill(own);
+        if (own.count == 0 && own.fresh == own.fresh_end) refill(own);
     } catch (...) {
         own.busy.clear(std::memory_order_release);
         throw;
     }
     void *found;
-    if (own.free) {
-        found = own.free;
-        own.free = own.free->next;
-        own.count--;
+    if (own.count > 0) {
+        found = own.free[--own.count];
+        if (own.count > 0) fetch(own.free[own.count - 1]); /* likely the next one */
     } else {
         found = own.fresh;
-        own.fresh += buffer_bytes;
+        own.fresh += cell_bytes;
     }
     own.busy.clear(std::memory_order_release);
-    return static_cast<float *>(found);
+    return found;
 }
 
-void swarf_slab::give(float *buffer) noexcept
+void swarf_slab::give(void *cell) noexcept
 {
     shelf &own = enter();
-    own.free = new (buffer) free_buffer{own.free};
-    if (++own.count > most_on_shelf) spill(own);
+    if (own.count == most_on_shelf) spill(own);
+    own.free[own.count++] = cell;
     own.busy.clear(std::memory_order_release);
 }
 
-bool swarf_slab::owns(const float *buffer) const noexcept
+bool swarf_slab::owns(const void *cell) const noexcept
 {
-    const char *const place = reinterpret_cast<const char *>(buffer);
+    const char *const place = static_cast<const char *>(cell);
     for (int i = region_count_.load(std::memory_order_acquire) - 1; i >= 0; i--) {
         const char *const begin = regions_[i].begin.load(std::memory_order_relaxed);
         if (place >= begin && place < begin + regions_[i].bytes) return true;

@@ -75,8 +75,8 @@ swarf_vdb_leaf *leaf_of(const swarf_tree *tree, size_t node, unsigned slot)
 }
 
 /* OpenVDB has no way to give a leaf a buffer of one's own, so this reaches its private pointer (an explicit
- * instantiation may name it). Only leaves of our trees hold such buffers, and take_buffer() has them back before
- * OpenVDB could free them; copies of a tree, which its tools work on, have buffers of OpenVDB's. */
+ * instantiation may name it). Only leaves of our trees lie in cells, and ~swarf_tree() takes them out before OpenVDB
+ * could free them; copies of a tree, which its tools work on, have leaves of OpenVDB's. */
 struct buffer_data {
     using type = float *openvdb::tree::LeafBuffer<float, 3>::*;
     friend type expose(buffer_data);
@@ -89,45 +89,33 @@ template <buffer_data::type Member> struct exposed {
 };
 template struct exposed<&openvdb::tree::LeafBuffer<float, 3>::mData>;
 
-float *&data_of(swarf_vdb_leaf &leaf)
+static_assert(sizeof(swarf_vdb_leaf) <= swarf_slab::node_bytes, "the node of a cell is too small");
+
+float *values_in_cell(swarf_vdb_leaf *leaf)
 {
-    return leaf.buffer().*expose(buffer_data());
+    return reinterpret_cast<float *>(reinterpret_cast<char *>(leaf) + swarf_slab::node_bytes);
 }
 
-/* Give a leaf's buffer back to the slab, if it came from there. */
-bool take_buffer(swarf_tree &tree, swarf_vdb_leaf &leaf) noexcept
+float *values_of(const swarf_tree *tree, swarf_vdb_leaf *leaf)
 {
-    float *&data = data_of(leaf);
-    if (leaf.buffer().isOutOfCore() || !data || !tree.slab->owns(data)) return false;
-    tree.slab->give(data);
-    data = nullptr;
-    return true;
+    return tree->adopted ? leaf->buffer().data() : values_in_cell(leaf);
 }
 
-/* Cutting makes and unmakes many leaves; those that go wait here, without buffers, for those that come, as memory at
- * hand is faster than the allocator's. 100 KiB a thread at most, freed with it. */
-constexpr size_t most_spares = 1024;
-thread_local std::vector<std::unique_ptr<swarf_vdb_leaf>> spares;
-
-std::unique_ptr<swarf_vdb_leaf> take_leaf(swarf_tree &tree, const Coord &corner)
+swarf_vdb_leaf *take_leaf(swarf_tree &tree, const Coord &corner)
 {
-    if (spares.capacity() == 0) spares.reserve(most_spares); /* here, where running out of memory can be told */
-    std::unique_ptr<swarf_vdb_leaf> leaf;
-    if (spares.empty()) {
-        /* PartialCreate: no buffer is filled only to be overwritten. */
-        leaf = std::make_unique<swarf_vdb_leaf>(openvdb::PartialCreate(), corner, 0.0f, false);
-    } else {
-        leaf = std::move(spares.back());
-        spares.pop_back();
-        leaf->setOrigin(corner);
-    }
-    data_of(*leaf) = tree.slab->take();
+    /* PartialCreate: no buffer is filled only to be overwritten. */
+    auto *leaf = new (tree.slab->take()) swarf_vdb_leaf(openvdb::PartialCreate(), corner, 0.0f, false);
+    leaf->buffer().*expose(buffer_data()) = values_in_cell(leaf);
     return leaf;
 }
 
-void drop_leaf(swarf_tree &tree, std::unique_ptr<swarf_vdb_leaf> leaf) noexcept
+/* Nothing needs to be done for the node in a cell: it holds nothing of its own. */
+void drop_leaf(swarf_tree &tree, swarf_vdb_leaf *leaf) noexcept
 {
-    if (take_buffer(tree, *leaf) && spares.size() < spares.capacity()) spares.push_back(std::move(leaf));
+    if (!tree.adopted || tree.slab->owns(leaf))
+        tree.slab->give(leaf);
+    else
+        delete leaf;
 }
 
 /* The cube of a slot is its number without the low two bits of x, y and z. */
@@ -150,7 +138,8 @@ swarf_tree::~swarf_tree()
 {
     for (swarf_vdb_node *node : nodes)
         if (node) /* not all are made when memory ran out */
-            for (auto leaf = node->beginChildOn(); leaf; ++leaf) take_buffer(*this, *leaf);
+            for (auto leaf = node->beginChildOn(); leaf; ++leaf)
+                if (slab->owns(&*leaf)) node->stealNode<swarf_vdb_leaf>(leaf.getCoord(), 0.0f, false);
     /* Node by node: ~Tree() makes lists of them first, and ends the program when there is no memory for the lists. */
     if (grid) grid->tree().root().clear();
 }
@@ -158,6 +147,7 @@ swarf_tree::~swarf_tree()
 swarf_tree *swarf_tree_adopt(const openvdb::FloatGrid::Ptr &grid)
 {
     auto tree = std::make_unique<swarf_tree>();
+    tree->adopted = true;
     tree->grid = grid;
     grid->tree().voxelizeActiveTiles();
     openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
@@ -212,6 +202,7 @@ extern "C" swarf_status swarf_tree_copy(const swarf_tree *tree, swarf_tree **out
 {
     return swarf_guard("stock", [&]() -> swarf_status {
         auto copy = std::make_unique<swarf_tree>();
+        copy->adopted = true;
         copy->layout = tree->layout;
         copy->base = tree->base;
         copy->occupied = tree->occupied;
@@ -251,12 +242,15 @@ extern "C" void swarf_tree_stamp_all(swarf_tree *tree, uint32_t generation)
 extern "C" float *swarf_tree_leaf(const swarf_tree *tree, size_t node, unsigned slot)
 {
     swarf_vdb_leaf *const leaf = leaf_of(tree, node, slot);
-    return leaf ? leaf->buffer().data() : nullptr;
+    return leaf ? values_of(tree, leaf) : nullptr;
 }
 
 extern "C" void swarf_tree_leaf_fetch(const swarf_tree *tree, size_t node, unsigned slot)
 {
-    __builtin_prefetch(leaf_of(tree, node, slot));
+    if (tree->adopted)
+        __builtin_prefetch(leaf_of(tree, node, slot));
+    else
+        __builtin_prefetch(&tree->nodes[node]->getTable()[slot]);
 }
 
 extern "C" int swarf_tree_tile_inside(const swarf_tree *tree, size_t node, unsigned slot)
@@ -269,13 +263,12 @@ extern "C" swarf_status swarf_tree_leaf_add(swarf_tree *tree, size_t node, unsig
 {
     return swarf_guard("stock", [&]() -> swarf_status {
         swarf_vdb_node &holder = *tree->nodes[node];
-        auto leaf = take_leaf(*tree, slot_corner(holder, slot));
-        std::memcpy(leaf->buffer().data(), values, SWARF_LEAF_SIZE * sizeof(float));
+        const Coord corner = slot_corner(holder, slot);
+        swarf_vdb_leaf *const leaf = take_leaf(*tree, corner);
+        std::memcpy(values_in_cell(leaf), values, SWARF_LEAF_SIZE * sizeof(float));
         set_mask(*leaf, mask);
-        if (holder.getChildMask().isOn(slot))
-            drop_leaf(*tree, std::unique_ptr<swarf_vdb_leaf>(
-                                 holder.stealNode<swarf_vdb_leaf>(slot_corner(holder, slot), 0.0f, false)));
-        holder.addLeaf(leaf.release());
+        if (holder.getChildMask().isOn(slot)) drop_leaf(*tree, holder.stealNode<swarf_vdb_leaf>(corner, 0.0f, false));
+        holder.addLeaf(leaf);
         stamp(tree, node, slot);
         tree->layout.occupied[node * SWARF_NODE_WORDS + (slot >> 6)] |= uint64_t(1) << (slot & 63);
         return SWARF_OK;
@@ -293,8 +286,7 @@ extern "C" void swarf_tree_tile(swarf_tree *tree, size_t node, unsigned slot, in
     const float value = inside ? -tree->layout.background : tree->layout.background;
     swarf_vdb_node &holder = *tree->nodes[node];
     if (holder.getChildMask().isOn(slot))
-        drop_leaf(*tree, std::unique_ptr<swarf_vdb_leaf>(
-                             holder.stealNode<swarf_vdb_leaf>(slot_corner(holder, slot), value, false)));
+        drop_leaf(*tree, holder.stealNode<swarf_vdb_leaf>(slot_corner(holder, slot), value, false));
     else
         holder.addTile(Index(slot), value, false);
     stamp(tree, node, slot);
@@ -322,7 +314,6 @@ extern "C" void swarf_tree_size(const swarf_tree *tree, size_t *leaves, size_t *
     size_t count = 0;
     for (const swarf_vdb_node *node : tree->nodes) count += node->getChildMask().countOn();
     *leaves = count;
-    *bytes = tree->nodes.size() * sizeof(swarf_vdb_node) +
-             count * (sizeof(swarf_vdb_leaf) + SWARF_LEAF_SIZE * sizeof(float)) +
+    *bytes = tree->nodes.size() * sizeof(swarf_vdb_node) + count * swarf_slab::cell_bytes +
              tree->occupied.size() * sizeof(uint64_t) + tree->stamps.size() * sizeof(uint32_t);
 }

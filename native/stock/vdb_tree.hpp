@@ -21,7 +21,8 @@ struct swarf_tree {
     std::vector<swarf_vdb_node *> nodes;
     std::vector<uint64_t> occupied;
     std::vector<uint32_t> stamps;
-    std::unique_ptr<swarf_slab> slab = std::make_unique<swarf_slab>(); /* buffers of the leaves that cutting made */
+    std::unique_ptr<swarf_slab> slab = std::make_unique<swarf_slab>(); /* of the leaves that cutting made */
+    bool adopted = false; /* some leaves may be OpenVDB's own; else all are in cells of the slab */
 
     swarf_tree() = default;
     swarf_tree(const swarf_tree &) = delete;
