@@ -188,16 +188,18 @@ static inline const contour_block *swarf_contour_block_near(const contour *work,
 /** The crossing of an edge, most often one of the block `near`; NULL where there is none. */
 const contour_crossing *swarf_contour_crossing(const contour *work, const contour_block *near, const int32_t voxel[3],
                                                int axis);
-/** What the exact surface can be in the eight parts of a block, gathered when first asked for: the smaller the box, the
- *  fewer moves a point has to look at. */
+/** What the exact surface can be in the eight parts of a block, and in their own eight parts, gathered when first asked
+ *  for: the smaller the box, the fewer moves a point has to look at. */
 typedef struct contour_near {
     const contour *work;
     const contour_block *block;
-    swarf_surface_near *part[8];
+    swarf_surface_near *part[8], *small[64];
 } contour_near;
 
 /** Of the part that holds a cell of the block, at[] in 0 .. 7; NULL without a surface. Owned by `near`. */
 swarf_status swarf_contour_near_get(contour_near *near, const int at[3], const swarf_surface_near **out);
+/** For a cell that is looked at from many points: of the part's part that holds it, where that pays. */
+swarf_status swarf_contour_near_narrow(contour_near *near, const int at[3], const swarf_surface_near **io);
 void swarf_contour_near_free(contour_near *near);
 
 /** What is known of one cycle, in voxels from the low corner of its cell. */

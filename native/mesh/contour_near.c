@@ -2,25 +2,41 @@
 /* The exact surface within a block, part by part. */
 #include "base/status.h"
 #include "mesh/contour.h"
+#include "surface/surface.h"
 
-/* Cells along an edge of a part: half a block. */
-enum { PART = 4 };
+/* Cells along an edge of a part, and of its own parts. */
+enum { PART = 4, SMALL = 2 };
+/* The points of a cell soon have looked at fewer traces. */
+enum { MANY = 10 };
 /* Steps onto the surface lead this far (in voxels) out of a cell. */
 static const double around = 0.25;
+
+static swarf_box box_of(const contour_near *near, const int at[3], int edge)
+{
+    const swarf_tree_layout *layout = near->work->layout;
+    swarf_box box;
+    for (int k = 0; k < 3; k++) {
+        const int32_t first = near->block->ijk[k] + at[k] / edge * edge;
+        box.lo[k] = layout->origin[k] + (first - around) * layout->voxel;
+        box.hi[k] = layout->origin[k] + (first + edge + around) * layout->voxel;
+    }
+    return box;
+}
+
+static int part_of(const int at[3], int edge)
+{
+    const int along = SWARF_LEAF_DIM / edge;
+    return (at[0] / edge * along + at[1] / edge) * along + at[2] / edge;
+}
 
 swarf_status swarf_contour_near_get(contour_near *near, const int at[3], const swarf_surface_near **out)
 {
     *out = NULL;
     const contour *work = near->work;
     if (!work->surface) return SWARF_OK;
-    swarf_surface_near **part = &near->part[at[0] / PART * 4 + at[1] / PART * 2 + at[2] / PART];
+    swarf_surface_near **part = &near->part[part_of(at, PART)];
     if (!*part) {
-        swarf_box box;
-        for (int k = 0; k < 3; k++) {
-            const int32_t first = near->block->ijk[k] + at[k] / PART * PART, end = first + PART;
-            box.lo[k] = work->layout->origin[k] + (first - around) * work->layout->voxel;
-            box.hi[k] = work->layout->origin[k] + (end + around) * work->layout->voxel;
-        }
+        const swarf_box box = box_of(near, at, PART);
         SWARF_TRY(swarf_surface_near_create(work->surface, part));
         SWARF_TRY(swarf_surface_gather(*part, work->moves, &box));
     }
@@ -28,7 +44,21 @@ swarf_status swarf_contour_near_get(contour_near *near, const int at[3], const s
     return SWARF_OK;
 }
 
+swarf_status swarf_contour_near_narrow(contour_near *near, const int at[3], const swarf_surface_near **io)
+{
+    if (!*io || *io == near->small[part_of(at, SMALL)] || swarf_surface_near_count(*io) < MANY) return SWARF_OK;
+    swarf_surface_near **small = &near->small[part_of(at, SMALL)];
+    if (!*small) {
+        const swarf_box box = box_of(near, at, SMALL);
+        SWARF_TRY(swarf_surface_near_create(near->work->surface, small));
+        SWARF_TRY(swarf_surface_narrow(*small, *io, &box));
+    }
+    *io = *small;
+    return SWARF_OK;
+}
+
 void swarf_contour_near_free(contour_near *near)
 {
     for (int i = 0; i < 8; i++) swarf_surface_near_destroy(near->part[i]);
+    for (int i = 0; i < 64; i++) swarf_surface_near_destroy(near->small[i]);
 }

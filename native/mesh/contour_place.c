@@ -91,11 +91,18 @@ static void place_middle(const contour_polygon *polygon, double out[3])
  * vertex; and the cosine between their normals, for 0.3 degrees. */
 static const double same_plane = 1e-3, same_plane_cosine = 0.999986;
 
-/* Where the field is flat round all crossings, their middle is on the surface, unless that is hidden from the field. */
-static int place_flat(const contour_polygon *polygon, const swarf_surface_near *near, double out[3])
+/* Whether the field is flat round all crossings. */
+static int is_flat(const contour_polygon *polygon)
 {
     for (int i = 0; i < polygon->count; i++)
         if (polygon->move[i] != SWARF_BY_FLAT_FIELD) return 0;
+    return 1;
+}
+
+/* Where the field is flat round all crossings, their middle is on the surface, unless that is hidden from the field. */
+static int place_flat(const contour_polygon *polygon, const swarf_surface_near *near, double out[3])
+{
+    if (!is_flat(polygon)) return 0;
     double middle[3];
     place_middle(polygon, middle);
     const double *n = polygon->normal[0];
@@ -220,6 +227,7 @@ static swarf_status place_cell(placing *p, const int at[3], contour_cell *cell, 
     for (int cycle = 0; cycle < joined->count; cycle++) {
         double inside[3] = {0.5, 0.5, 0.5};
         gather(p, at, joined, cycle, &polygon);
+        if (!is_flat(&polygon)) SWARF_TRY(swarf_contour_near_narrow(&p->near, at, &surface));
         const int flat = polygon.count > 0 && place_vertex(p, at, cell->config, &polygon, surface, inside);
         if (flat && joined->count == 1) block->flat_mask[at[0]] |= UINT64_C(1) << (at[1] * 8 + at[2]);
         for (int k = 0; k < 3; k++)

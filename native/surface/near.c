@@ -4,7 +4,10 @@
  * Each trace is looked at from the middle of the box; `raw` there changes no faster than a point moves, which bounds it
  * everywhere in the box. What cannot have a zero in the box, or lies behind another trace everywhere, is left out. The
  * rest is ordered by raw, so that a point stops looking as soon as nothing nearer can come; where raw is the least of a
- * few convex functions, their tangents in the middle tell of most traces that they are not the nearest. */
+ * few convex functions, their tangents in the middle tell of most traces that they are not the nearest.
+ *
+ *   traces: of the box that was gathered; boxes within it that are narrowed from it look at the same ones
+ *   seen: what a point goes through, a cache line and a half each */
 #include "surface/surface.h"
 
 #include "base/memory.h"
@@ -16,13 +19,16 @@
 
 struct seen {
     double raw; /* from the middle of the box */
-    int bounds;
+    int32_t bounds;
+    uint32_t trace;
     swarf_touch_bound bound[2]; /* of raw, by its tangents there */
-    swarf_trace trace;
 };
 
 struct swarf_surface_near {
     swarf_surface *surface;
+    swarf_trace *traces;
+    size_t trace_count, trace_room;
+    const swarf_trace *looked_at; /* own traces, or those of the larger box */
     struct seen *seen;
     size_t count, room;
     double middle[3];
@@ -49,6 +55,7 @@ void swarf_surface_near_destroy(swarf_surface_near *near)
     if (!near) return;
     swarf_surface_near_destroy(near->before);
     swarf_surface_release(near->surface);
+    free(near->traces);
     free(near->seen);
     free(near);
 }
@@ -73,6 +80,21 @@ static int overlaps(const swarf_surface_box *box, const swarf_box *where)
     return 1;
 }
 
+/* Add a trace to what is seen unless it cannot matter. */
+static swarf_status look_at(struct gathering *g, uint32_t trace)
+{
+    swarf_surface_near *near = g->near;
+    swarf_touch touch;
+    swarf_trace_touch(&near->looked_at[trace], near->middle, &touch);
+    if (touch.raw > 2 * g->reach || touch.raw > g->ceiling + 2 * g->reach) return SWARF_OK;
+    if (touch.exact) g->ceiling = fmin(g->ceiling, touch.raw);
+    SWARF_TRY(swarf_array_reserve((void **)&near->seen, &near->room, near->count + 1, sizeof *near->seen));
+    struct seen *seen = &near->seen[near->count++];
+    *seen = (struct seen){.raw = touch.raw, .bounds = touch.bounds, .trace = trace};
+    memcpy(seen->bound, touch.bound, sizeof seen->bound);
+    return SWARF_OK;
+}
+
 static swarf_status gather_level(struct gathering *g, int level, size_t first, size_t end)
 {
     const swarf_surface *surface = g->near->surface;
@@ -86,34 +108,53 @@ static swarf_status gather_level(struct gathering *g, int level, size_t first, s
             continue;
         }
         swarf_surface_near *near = g->near;
-        SWARF_TRY(swarf_array_reserve((void **)&near->seen, &near->room, near->count + 1, sizeof *near->seen));
-        struct seen *seen = &near->seen[near->count];
-        swarf_touch touch;
-        SWARF_TRY(swarf_surface_trace(surface, i, &seen->trace));
-        swarf_trace_touch(&seen->trace, near->middle, &touch);
-        seen->raw = touch.raw;
-        seen->bounds = touch.bounds;
-        memcpy(seen->bound, touch.bound, sizeof seen->bound);
-        if (touch.raw > 2 * g->reach || touch.raw > g->ceiling + 2 * g->reach) continue;
-        if (touch.exact) g->ceiling = fmin(g->ceiling, touch.raw);
-        near->count++;
+        SWARF_TRY(swarf_array_reserve((void **)&near->traces, &near->trace_room, near->trace_count + 1,
+                                      sizeof *near->traces));
+        SWARF_TRY(swarf_surface_trace(surface, i, &near->traces[near->trace_count]));
+        near->looked_at = near->traces;
+        const size_t before = near->count;
+        SWARF_TRY(look_at(g, (uint32_t)near->trace_count));
+        near->trace_count += near->count - before;
     }
     return SWARF_OK;
 }
 
-/* Ties keep the order of the program. */
+/* Ties keep the order of the program, which is that of the traces. */
 static int nearer(const void *a, const void *b)
 {
     const struct seen *x = a, *y = b;
     if (x->raw != y->raw) return x->raw < y->raw ? -1 : 1;
-    if (x->trace.move != y->trace.move) return x->trace.move < y->trace.move ? -1 : 1;
-    return x->trace.t0 < y->trace.t0 ? -1 : x->trace.t0 > y->trace.t0;
+    return x->trace < y->trace ? -1 : x->trace > y->trace;
+}
+
+static void sort_seen(const struct gathering *g)
+{
+    swarf_surface_near *near = g->near;
+    size_t kept = 0;
+    for (size_t i = 0; i < near->count; i++)
+        if (near->seen[i].raw <= g->ceiling + 2 * g->reach) near->seen[kept++] = near->seen[i];
+    near->count = kept;
+    if (kept > 1) qsort(near->seen, kept, sizeof *near->seen, nearer);
+}
+
+/* The middle of the box and from there to its corners. */
+static swarf_status begin_box(struct gathering *g)
+{
+    const swarf_box *where = g->where;
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        SWARF_REQUIRE(isfinite(where->lo[k]) && isfinite(where->hi[k]) && where->hi[k] >= where->lo[k],
+                      "surface: the box is empty or not finite in %c", "xyz"[k]);
+        g->near->middle[k] = 0.5 * (where->lo[k] + where->hi[k]);
+        square += 0.25 * (where->hi[k] - where->lo[k]) * (where->hi[k] - where->lo[k]);
+    }
+    g->reach = sqrt(square);
+    return SWARF_OK;
 }
 
 /* The box turned back to the set-up before, and the box round that. */
-static swarf_status gather_before(swarf_surface_near *near, const swarf_box *where)
+static swarf_box turn_back(const swarf_surface *surface, const swarf_box *where)
 {
-    const swarf_surface *surface = near->surface;
     swarf_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (int corner = 0; corner < 8; corner++) {
         double p[3];
@@ -124,7 +165,7 @@ static swarf_status gather_before(swarf_surface_near *near, const swarf_box *whe
             box.hi[k] = fmax(box.hi[k], p[k]);
         }
     }
-    return swarf_surface_gather(near->before, surface->before_moves, &box);
+    return box;
 }
 
 static void first_shape(const swarf_surface_near *near, const double point[3], swarf_surface_point *out)
@@ -147,17 +188,10 @@ static void first_shape(const swarf_surface_near *near, const double point[3], s
 swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const swarf_box *where)
 {
     SWARF_REQUIRE(near && where, "surface: NULL");
-    near->count = 0;
+    near->count = near->trace_count = 0;
     const swarf_surface *surface = near->surface;
     struct gathering g = {.near = near, .where = where, .ceiling = INFINITY};
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        SWARF_REQUIRE(isfinite(where->lo[k]) && isfinite(where->hi[k]) && where->hi[k] >= where->lo[k],
-                      "surface: the box is empty or not finite in %c", "xyz"[k]);
-        near->middle[k] = 0.5 * (where->lo[k] + where->hi[k]);
-        square += 0.25 * (where->hi[k] - where->lo[k]) * (where->hi[k] - where->lo[k]);
-    }
-    g.reach = sqrt(square);
+    SWARF_TRY(begin_box(&g));
     size_t lo = 0, hi = surface->part_count; /* first part of a move that does not count */
     while (lo < hi) {
         const size_t middle = (lo + hi) / 2;
@@ -168,18 +202,36 @@ swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const 
     }
     g.limit = lo;
     const int top = surface->levels - 1;
-    swarf_status status = near->before ? gather_before(near, where) : SWARF_OK;
-    if (status == SWARF_OK) status = gather_level(&g, top, 0, surface->level_count[top]);
-    if (status != SWARF_OK) {
-        near->count = 0;
-        return status;
+    swarf_status status = SWARF_OK;
+    if (near->before) {
+        const swarf_box back = turn_back(surface, where);
+        status = swarf_surface_gather(near->before, surface->before_moves, &back);
     }
-    size_t kept = 0;
-    for (size_t i = 0; i < near->count; i++)
-        if (near->seen[i].raw <= g.ceiling + 2 * g.reach) near->seen[kept++] = near->seen[i];
-    near->count = kept;
-    if (kept > 1) qsort(near->seen, kept, sizeof *near->seen, nearer);
-    return SWARF_OK;
+    if (status == SWARF_OK) status = gather_level(&g, top, 0, surface->level_count[top]);
+    if (status == SWARF_OK)
+        sort_seen(&g);
+    else
+        near->count = 0;
+    return status;
+}
+
+swarf_status swarf_surface_narrow(swarf_surface_near *near, const swarf_surface_near *wider, const swarf_box *where)
+{
+    near->count = 0;
+    near->looked_at = wider->looked_at;
+    struct gathering g = {.near = near, .where = where, .ceiling = INFINITY};
+    SWARF_TRY(begin_box(&g));
+    swarf_status status = SWARF_OK;
+    if (near->before) {
+        const swarf_box back = turn_back(near->surface, where);
+        status = swarf_surface_narrow(near->before, wider->before, &back);
+    }
+    for (size_t i = 0; status == SWARF_OK && i < wider->count; i++) status = look_at(&g, wider->seen[i].trace);
+    if (status == SWARF_OK)
+        sort_seen(&g);
+    else
+        near->count = 0;
+    return status;
 }
 
 /* Whether the trace is further than `beaten` for what is known of it. */
@@ -207,15 +259,16 @@ void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3
         const double beaten = least < -first ? least : -first;
         if (seen->raw - away > beaten) break;
         if (is_beyond(seen, way, beaten)) continue;
+        const swarf_trace *trace = &near->looked_at[seen->trace];
         swarf_touch touch;
-        swarf_trace_touch(&seen->trace, point, &touch);
+        swarf_trace_touch(trace, point, &touch);
         if (touch.value >= least) continue;
         least = touch.value;
         if (-least <= first) continue;
         found = (swarf_surface_point){.value = -least,
                                       .normal = {-touch.gradient[0], -touch.gradient[1], -touch.gradient[2]},
                                       .t = touch.t,
-                                      .move = seen->trace.move,
+                                      .move = trace->move,
                                       .piece = touch.piece};
     }
     *out = found;
