@@ -315,6 +315,7 @@ static PyMethodDef mesh_methods[] = {
     {"thickness", WITH_KEYWORDS(mesh_thickness), METH_VARARGS | METH_KEYWORDS, mesh_thickness_doc},
     {"placed", mesh_placed, METH_O, mesh_placed_doc},
     {"origins", WITH_KEYWORDS(mesh_origins), METH_VARARGS | METH_KEYWORDS, mesh_origins_doc},
+    {"faces", WITH_KEYWORDS(mesh_faces), METH_VARARGS | METH_KEYWORDS, mesh_faces_doc},
     {"section", WITH_KEYWORDS(mesh_section), METH_VARARGS | METH_KEYWORDS, mesh_section_doc},
     {NULL, NULL, 0, NULL},
 };

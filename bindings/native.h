@@ -217,11 +217,12 @@ PyObject *surface_make(PyTypeObject *type, PyObject *program, PyObject *tools, P
 
 /* ---- placement.c: methods of Stock, Surface and Mesh ---- */
 
-extern const char stock_placed_doc[], surface_next_doc[], mesh_origins_doc[], mesh_placed_doc[];
+extern const char stock_placed_doc[], surface_next_doc[], mesh_origins_doc[], mesh_faces_doc[], mesh_placed_doc[];
 PyObject *stock_placed(PyObject *self, PyObject *args, PyObject *keywords);
 PyObject *surface_next(PyObject *self, PyObject *args, PyObject *keywords);
 PyObject *mesh_placed(PyObject *self, PyObject *placement);
 PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords);
+PyObject *mesh_faces(PyObject *self, PyObject *args, PyObject *keywords);
 
 /* ---- mesh.c ---- */
 

@@ -162,3 +162,54 @@ PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords)
     Py_XDECREF(values);
     return result;
 }
+
+const char mesh_faces_doc[] =
+    "faces($self, surface, *, moves=None, reach=0.0, progress=None)\n--\n\n"
+    "The endless face that each triangle is on: a read-only (m, 9) float64 view of kind (as in origins()), point (x, "
+    "y, "
+    "z),\n"
+    "axis (unit), radius, and second number. Plane: a point, the normal out of the material; cylinder: axis and "
+    "radius;\n"
+    "cone: apex, axis, second = tangent of the angle between axis and face; sphere: centre, radius; torus: centre, "
+    "axis,\n"
+    "radius to the middle of the tube, second = radius of the tube. Looked for as origins() does.";
+
+PyObject *mesh_faces(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    enum { COLUMNS = 9 };
+    static char *names[] = {"surface", "moves", "reach", "progress", NULL};
+    module_state *state = state_of(self);
+    PyObject *given, *moves = Py_None, *progress = NULL;
+    const swarf_surface *surface;
+    const swarf_mesh *mesh = ((mesh_object *)self)->handle;
+    size_t count;
+    double reach = 0;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$OdO:faces", names, state->surface, &given, &moves, &reach,
+                                     &progress) ||
+        surface_argument(state, given, moves, &surface, &count))
+        return NULL;
+    const size_t rows = swarf_mesh_triangles(mesh).triangle_count;
+    swarf_surface_point *points = PyMem_Calloc(rows + 1, sizeof *points);
+    PyObject *values = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(COLUMNS * rows * sizeof(double))), *result = NULL;
+    native_call call;
+    if (!points) {
+        PyErr_NoMemory();
+    } else if (values && !call_begin(&call, progress)) {
+        double *out = (double *)(void *)PyBytes_AsString(values);
+        const swarf_status status = swarf_mesh_origins(mesh, surface, count, reach, &call.progress, points);
+        for (size_t i = 0; !status && i < rows; i++) {
+            const swarf_face_shape shape = swarf_surface_shape(surface, &points[i]);
+            double *row = out + COLUMNS * i;
+            row[0] = shape.kind;
+            memcpy(row + 1, shape.point, sizeof shape.point);
+            memcpy(row + 4, shape.axis, sizeof shape.axis);
+            row[7] = shape.radius;
+            row[8] = shape.second;
+        }
+        if (!call_end(&call, state, status))
+            result = buffer_view(state, values, out, "d", sizeof(double), rows, COLUMNS, NULL);
+    }
+    PyMem_Free(points);
+    Py_XDECREF(values);
+    return result;
+}

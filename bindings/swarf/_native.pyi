@@ -684,6 +684,13 @@ class Mesh:
         ...), move (-1: the first shape, -2: not known), piece of the cutter or the first shape, and kind of face: 0
         other, 1 plane, 2 cylinder, 3 cone, 4 sphere, 5 torus. Looked for within ``reach`` mm (0: a voxel) of the
         triangle's middle."""
+    def faces(
+        self, surface: Surface, *, moves: Optional[int] = None, reach: float = 0.0, progress: Progress = None
+    ) -> memoryview:
+        """The endless face that each triangle is on: a read-only (m, 9) float64 view of kind (as in origins()), point (x,
+        y, z), axis (unit), radius, and second number. Plane: a point, the normal out of the material; cylinder: axis and
+        radius; cone: apex, axis, second = tangent of the angle between axis and face; sphere: centre, radius; torus:
+        centre, axis, radius to the middle of the tube, second = radius of the tube. Looked for as origins() does."""
     def section(self, point: Point, normal: Point) -> tuple[tuple[tuple[float, float, float], ...], ...]:
         """Where the plane through ``point`` cuts the mesh: a tuple of polylines, each a tuple of (x, y, z) in mm,
         material on the left seen against ``normal``. In a closed mesh each goes on from its last point to its

@@ -63,6 +63,18 @@ typedef enum swarf_face_kind {
 /** What face a point of the surface is on, by the piece of the cutter and the move that made it. */
 SWARF_API swarf_face_kind swarf_surface_face(const swarf_surface *surface, const swarf_surface_point *point);
 
+/** A face as CAD programs know them, endless. Without meaning: 0. */
+typedef struct swarf_face_shape {
+    int32_t kind; /**< swarf_face_kind */
+    int32_t reserved;
+    double point[3]; /**< plane, cylinder: on it, on its axis; cone: its apex; sphere, torus: the centre; mm */
+    double axis[3];  /**< plane: its normal, out of the material; cylinder, cone, torus: the axis; unit */
+    double radius;   /**< cylinder, sphere; torus: from the axis to the middle of its tube; mm */
+    double second;   /**< cone: tangent of the angle between its axis and it; torus: radius of its tube, mm */
+} swarf_face_shape;
+/** The face that a point of the surface is on. */
+SWARF_API swarf_face_shape swarf_surface_shape(const swarf_surface *surface, const swarf_surface_point *point);
+
 /** What made a point and on what kind of face it lies. */
 typedef struct swarf_surface_mark {
     int32_t set_up; /**< as of swarf_surface_origin() */

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Endless faces, as rows of Mesh.faces() tell of them: how far a point is, where several of them meet."""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Callable, Optional, Sequence
+
+Vector = tuple[float, float, float]
+
+PLANE, CYLINDER, CONE, SPHERE, TORUS = range(1, 6)
+
+#: Steps of a search for a point that lies on several faces; from within a voxel it takes about five.
+STEPS = 40
+
+#: Damping, as a part of the system: what the faces leave open (the way along an edge) stays as it is.
+DAMPING = 1e-9
+
+
+def add(a: Vector, b: Vector, times: float = 1.0) -> Vector:
+    """a + times * b."""
+    return a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]
+
+
+def dot(a: Vector, b: Vector) -> float:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """Vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def distance(a: Vector, b: Vector) -> float:
+    """Of two points."""
+    return math.dist(a, b)
+
+
+def unit(a: Vector) -> Vector:
+    """Of length 1; of no length it stays."""
+    length = math.hypot(*a)
+    return (a[0] / length, a[1] / length, a[2] / length) if length > 0 else a
+
+
+@dataclass(frozen=True)
+class Shape:
+    """An endless face; see Mesh.faces()."""
+
+    kind: int
+    point: Vector
+    axis: Vector
+    radius: float
+    second: float
+
+    @classmethod
+    def of_row(cls, row: Sequence[float]) -> Shape:
+        """Of a row of Mesh.faces()."""
+        kind, x, y, z, u, v, w, radius, second = row
+        return cls(int(kind), (x, y, z), (u, v, w), radius, second)
+
+    def see(self, place: Vector) -> tuple[float, Vector]:
+        """Signed distance of a place and its gradient: along a plane's normal, away from an axis, a centre, a tube. On
+        an axis, where the gradient is none, it is 0."""
+        e = add(place, self.point, -1)
+        if self.kind == SPHERE:
+            return math.hypot(*e) - self.radius, unit(e)
+        h = dot(e, self.axis)
+        if self.kind == PLANE:
+            return h, self.axis
+        across = add(e, self.axis, -h)
+        rho, away = math.hypot(*across), unit(across)
+        if self.kind == CYLINDER:
+            return rho - self.radius, away
+        if self.kind == CONE:
+            length = math.hypot(1, self.second)
+            side = math.copysign(self.second, h)
+            gradient = add((0.0, 0.0, 0.0), away, 1 / length)
+            return (rho - side * h) / length, add(gradient, self.axis, -side / length)
+        out = add(add((0.0, 0.0, 0.0), away, rho - self.radius), self.axis, h)
+        return math.hypot(*out) - self.second, unit(out)
+
+    def is_same(self, other: Shape, lengths: float, directions: float) -> bool:
+        """Whether it is the other one within a tolerance of lengths (mm) and of directions."""
+        if self.kind != other.kind or abs(self.radius - other.radius) > lengths:
+            return False
+        between = add(other.point, self.point, -1)
+        if self.kind == SPHERE:
+            return math.hypot(*between) <= lengths
+        if math.hypot(*cross(self.axis, other.axis)) > directions:
+            return False
+        along = dot(between, self.axis)
+        if self.kind == PLANE:
+            return abs(along) <= lengths
+        off = math.hypot(*add(between, self.axis, -along))
+        if self.kind == CYLINDER:
+            return off <= lengths
+        tolerance = directions if self.kind == CONE else lengths
+        return off <= lengths and abs(along) <= lengths and abs(self.second - other.second) <= tolerance
+
+
+#: An equation: value and gradient at a place, wanted to be 0.
+Equation = Callable[[Vector], tuple[float, Vector]]
+
+
+def tangency(a: Shape, b: Shape, same_way: bool) -> list[Equation]:
+    """That two faces have one normal (or opposite ones) at a place: they touch there, and do not cross."""
+    sign = -1.0 if same_way else 1.0
+
+    def difference(place: Vector) -> Vector:
+        return add(a.see(place)[1], b.see(place)[1], sign)
+
+    def equation(k: int) -> Equation:
+        def see(place: Vector) -> tuple[float, Vector]:
+            step = 1e-5
+            slope = [0.0, 0.0, 0.0]
+            for i in range(3):
+                way = (step * (i == 0), step * (i == 1), step * (i == 2))
+                slope[i] = (difference(add(place, way))[k] - difference(add(place, way, -1))[k]) / (2 * step)
+            return difference(place)[k], (slope[0], slope[1], slope[2])
+        return see
+
+    return [equation(k) for k in range(3)]
+
+
+def meet(equations: Sequence[Equation], start: Vector) -> Optional[tuple[Vector, float]]:
+    """The place near `start` where all equations hold best, and what is left of them; by Gauss and Newton, along what
+    they leave open it stays. None where there is none in reach."""
+    place = start
+    for _ in range(STEPS):
+        matrix = [[0.0] * 3 for _ in range(3)]
+        right = [0.0] * 3
+        for equation in equations:
+            value, g = equation(place)
+            for i in range(3):
+                right[i] -= g[i] * value
+                for j in range(3):
+                    matrix[i][j] += g[i] * g[j]
+        damping = DAMPING * (matrix[0][0] + matrix[1][1] + matrix[2][2])
+        if not damping > 0:
+            return None
+        rows = [(matrix[i][0] + damping * (i == 0), matrix[i][1] + damping * (i == 1), matrix[i][2] + damping * (i == 2))
+                for i in range(3)]
+        wanted = (right[0], right[1], right[2])
+        a, b, c = rows
+        whole = dot(a, cross(b, c))
+        if whole == 0:
+            return None
+        step = (dot(wanted, cross(b, c)) / whole, dot(a, cross(wanted, c)) / whole, dot(a, cross(b, wanted)) / whole)
+        place = add(place, step)
+        if not all(map(math.isfinite, place)):
+            return None
+        if math.hypot(*step) < 1e-13:
+            break
+    return place, max(abs(equation(place)[0]) for equation in equations)
