@@ -22,11 +22,17 @@ def share(progress: Report, begin: float, end: float) -> Report:
     return None if progress is None else lambda fraction: progress(begin + (end - begin) * fraction)
 
 
+def check(progress: Report, fraction: float) -> None:
+    """Tell how much is done; Cancelled."""
+    if progress is not None and progress(fraction):
+        raise Cancelled("cancelled by the progress callback")
+
+
 def told(items: Iterable[T], count: int, progress: Report) -> Iterator[T]:
     """The items of a loop, its progress told meanwhile; Cancelled."""
     for number, item in enumerate(items):
-        if progress is not None and number % TURNS == 0 and progress(number / count):
-            raise Cancelled("cancelled by the progress callback")
+        if number % TURNS == 0:
+            check(progress, number / count)
         yield item
 
 

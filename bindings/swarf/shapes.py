@@ -13,6 +13,9 @@ PLANE, CYLINDER, CONE, SPHERE, TORUS = range(1, 6)
 #: Steps of a search for a point that lies on several faces; from within a voxel it takes about five.
 STEPS = 40
 
+#: mm; a step that is shorter is the last.
+SETTLED = 1e-11
+
 #: Damping, as a part of the system: what the faces leave open (the way along an edge) stays as it is.
 DAMPING = 1e-9
 
@@ -99,50 +102,45 @@ class Shape:
         return off <= lengths and abs(along) <= lengths and abs(self.second - other.second) <= tolerance
 
 
-#: An equation: value and gradient at a place, wanted to be 0.
-Equation = Callable[[Vector], tuple[float, Vector]]
+#: Equations: values and their gradients at a place, wanted to be 0.
+Equations = Callable[[Vector], list[tuple[float, Vector]]]
 
 
-def tangency(a: Shape, b: Shape, same_way: bool) -> list[Equation]:
+def on(shape: Shape) -> Equations:
+    """That a place is on a shape."""
+    return lambda place: [shape.see(place)]
+
+
+def tangency(a: Shape, b: Shape, same_way: bool) -> Equations:
     """That two faces have one normal (or opposite ones) at a place: they touch there, and do not cross."""
     sign = -1.0 if same_way else 1.0
 
     def difference(place: Vector) -> Vector:
         return add(a.see(place)[1], b.see(place)[1], sign)
 
-    def equation(k: int) -> Equation:
-        def see(place: Vector) -> tuple[float, Vector]:
-            step = 1e-5
-            slope = [0.0, 0.0, 0.0]
-            for i in range(3):
-                way = (step * (i == 0), step * (i == 1), step * (i == 2))
-                slope[i] = (difference(add(place, way))[k] - difference(add(place, way, -1))[k]) / (2 * step)
-            return difference(place)[k], (slope[0], slope[1], slope[2])
-        return see
+    def see(place: Vector) -> list[tuple[float, Vector]]:
+        here, step = difference(place), 1e-5
+        slopes = []
+        for way in ((step, 0.0, 0.0), (0.0, step, 0.0), (0.0, 0.0, step)):
+            change = add(difference(add(place, way)), difference(add(place, way, -1)), -1)
+            slopes.append((change[0] / (2 * step), change[1] / (2 * step), change[2] / (2 * step)))
+        return [(here[k], (slopes[0][k], slopes[1][k], slopes[2][k])) for k in range(3)]
 
-    return [equation(k) for k in range(3)]
+    return see
 
 
-def meet(equations: Sequence[Equation], start: Vector) -> Optional[tuple[Vector, float]]:
+def meet(equations: Sequence[Equations], start: Vector) -> Optional[tuple[Vector, float]]:
     """The place near `start` where all equations hold best, and what is left of them; by Gauss and Newton, along what
     they leave open it stays. None where there is none in reach."""
     place = start
     for _ in range(STEPS):
-        matrix = [[0.0] * 3 for _ in range(3)]
-        right = [0.0] * 3
-        for equation in equations:
-            value, g = equation(place)
-            for i in range(3):
-                right[i] -= g[i] * value
-                for j in range(3):
-                    matrix[i][j] += g[i] * g[j]
+        rows = [row for equation in equations for row in equation(place)]
+        matrix = [[sum(g[i] * g[j] for _, g in rows) for j in range(3)] for i in range(3)]
+        wanted = (-sum(g[0] * value for value, g in rows), -sum(g[1] * value for value, g in rows),
+                  -sum(g[2] * value for value, g in rows))
         damping = DAMPING * (matrix[0][0] + matrix[1][1] + matrix[2][2])
-        if not damping > 0:
-            return None
-        rows = [(matrix[i][0] + damping * (i == 0), matrix[i][1] + damping * (i == 1), matrix[i][2] + damping * (i == 2))
-                for i in range(3)]
-        wanted = (right[0], right[1], right[2])
-        a, b, c = rows
+        a, b, c = ((row[0] + damping * (i == 0), row[1] + damping * (i == 1), row[2] + damping * (i == 2))
+                   for i, row in enumerate(matrix))
         whole = dot(a, cross(b, c))
         if whole == 0:
             return None
@@ -150,6 +148,6 @@ def meet(equations: Sequence[Equation], start: Vector) -> Optional[tuple[Vector,
         place = add(place, step)
         if not all(map(math.isfinite, place)):
             return None
-        if math.hypot(*step) < 1e-13:
+        if math.hypot(*step) < SETTLED:
             break
-    return place, max(abs(equation(place)[0]) for equation in equations)
+    return place, max(abs(value) for equation in equations for value, _ in equation(place))

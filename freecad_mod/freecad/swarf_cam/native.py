@@ -233,6 +233,62 @@ def simulate(data, voxel_mm, folder, progress=None):
 MESH_ERROR_VOXELS = 0.1
 
 
+def _exact(data, stock_file, progress=None):
+    """(swarf.Job, what is left of its stock, the exact surface of that)."""
+    swarf = load()
+    stocks, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name)) for name in ("stocks", "progress"))
+    share = functools.partial(shares.share, progress)
+    job = to_job(data)
+    left = swarf.Stock.read(stock_file, progress=share(0, 0.25))
+    first = stocks.make_first(job.stock, voxel=left.voxel, progress=share(0.25, 0.75))
+    return job, left, first.surface(job.program, job.tools, progress=share(0.75, 1))
+
+
+# A solid is made of a mesh with an error of so many voxels: few triangles where it is flat, and edges that wander little.
+SOLID_ERROR_VOXELS = 0.02
+
+# Triangles that a solid is made of in some seconds.
+SOLID_TRIANGLES_MAX = 500000
+
+
+@dataclass
+class Analytic:
+    """A STEP file with faces as they were cut. share: part of the area on planes, cylinders, cones, spheres and tori;
+    reason: why there is no file, None when there is; volume_mm3 and area_mm2 of the mesh it was made of, which is within
+    error_mm; faces: their number."""
+
+    share: float
+    reason: str = None
+    volume_mm3: float = 0.0
+    area_mm2: float = 0.0
+    error_mm: float = 0.0
+    faces: int = 0
+
+
+def export_analytic(data, stock_file, path, largest=False, progress=None):
+    """Write what is left of a JobData's stock as a STEP file of analytic faces -> Analytic, without a file where the stock
+    is not bounded by such faces alone. Raises and the rest as export()."""
+    swarf = load()
+    brep, step, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))
+                                 for name in ("brep", "step", "parts", "progress"))
+    share = functools.partial(shares.share, progress)
+    _, left, surface = _exact(data, stock_file, share(0, 0.4))
+    error = SOLID_ERROR_VOXELS * left.voxel
+    mesh = swarf.Mesh.from_stock(left, error, surface=surface, progress=share(0.4, 0.7))
+    if not mesh.triangle_count:
+        raise JobError("nothing is left of the stock")
+    if largest:
+        mesh = parts.largest(mesh)
+    if mesh.triangle_count > SOLID_TRIANGLES_MAX:
+        return Analytic(0.0, "it takes more than %d triangles to tell its faces" % SOLID_TRIANGLES_MAX)
+    try:
+        made = brep.make(mesh, surface, left.voxel, progress=share(0.7, 1))
+    except brep.NotAnalytic as problem:
+        return Analytic(problem.share, str(problem))
+    step.write(made, path)
+    return Analytic(1.0, None, mesh.volume, mesh.area, error, len(made.faces))
+
+
 def export(data, stock_file, path, error_mm=None, budget=0, colour=None, tolerance_mm=0.05, largest=False,
            progress=None):
     """Write the mesh of what is left of a JobData's stock, a .vdb file, on the exact surface -> number of triangles.
@@ -243,13 +299,10 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, toleran
     JobError where nothing is left, or no mesh is that small; swarf.Error, OSError.
     """
     swarf = load()
-    stocks, colours, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))
-                                      for name in ("stocks", "colours", "parts", "progress"))
+    colours, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))
+                              for name in ("colours", "parts", "progress"))
     share = functools.partial(shares.share, progress)
-    job = to_job(data)
-    left = swarf.Stock.read(stock_file, progress=share(0, 0.1))
-    first = stocks.make_first(job.stock, voxel=left.voxel, progress=share(0.1, 0.3))
-    surface = first.surface(job.program, job.tools, progress=share(0.3, 0.4))
+    job, left, surface = _exact(data, stock_file, share(0, 0.4))
     mesh = swarf.Mesh.from_stock(left, MESH_ERROR_VOXELS * left.voxel if error_mm is None else error_mm, budget=budget,
                                  surface=surface, progress=share(0.4, 0.8))
     if not mesh.triangle_count:

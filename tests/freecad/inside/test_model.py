@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The stock as a model: files by suffix, shapes, sections, estimates, and what cannot be."""
 
+import math
 import os
 import tempfile
 import unittest
@@ -11,6 +12,7 @@ import Part
 import samples
 from freecad.swarf_cam import native
 from freecad.swarf_cam.app import fixtures, model, simulation
+from freecad.swarf_cam.core import steps
 from freecad.swarf_cam.core.errors import JobError
 
 VOXEL = 0.5
@@ -48,12 +50,70 @@ class TestModel(unittest.TestCase):
             self.assertAlmostEqual(shape.Volume, LEFT, delta=0.1)
             self.assertTrue(shape.isValid())
             self.assertEqual(len(shape.Faces), 10)  # a slotted block
+
+    def test_a_slope_by_an_end_mill_is_facets(self):
+        self.job.Operations.Group[0].Path = samples.path_of("G0 X8 Y10 Z5", "G0 Z0", "G1 X32 Z-4 F10", "G0 Z5")
+        self.document.recompute()
+        simulation.simulate(self.obj)
+        made = steps.run(model.export_steps(self.obj, self.path("part.step")))
+        made.run()
+        made.finish()
+        self.assertTrue(0.8 < made.analytic.share < 1, made.analytic)
+        self.assertIn("planes, cylinders", made.analytic.reason)
+        shape = Part.Shape()
+        shape.read(self.path("part.step"))
+        self.assertTrue(shape.isValid() and all(isinstance(face.Surface, Part.Plane) for face in shape.Faces))
+        self.assertAlmostEqual(shape.Volume, self.obj.Mesh.Volume, delta=0.2)
         limit, model.SHAPE_TRIANGLES_MAX = model.SHAPE_TRIANGLES_MAX, 10
         try:
             with self.assertRaisesRegex(JobError, "too many for a shape"):
                 model.export(self.obj, self.path("many.step"))
         finally:
             model.SHAPE_TRIANGLES_MAX = limit
+
+    def test_what_freecad_doubts_is_not_taken(self):
+        made = native.Analytic(1.0, None, 8.0, 24.0, 0.01, 6)
+        self.assertIsNone(model._doubt(Part.makeBox(2, 2, 2), made))
+        self.assertIn("volume", model._doubt(Part.makeBox(2, 2, 2.1), made))
+        self.assertIn("not valid", model._doubt(Part.makeBox(2, 2, 2).Faces[0], made))
+
+    def test_analytic_faces(self):
+        """A profile with round corners, a pocket, a slot with round ends, a drilled hole: faces as they were cut."""
+        cone = 2.5 / math.tan(math.radians(59))
+        drill = Part.makeCone(0, 2.5, cone).fuse(Part.makeCylinder(2.5, 30, FreeCAD.Vector(0, 0, cone))).removeSplitter()
+        tools = [samples.add_controller(self.document, 1, samples.end_mill(10), CuttingEdgeHeight=20.0),
+                 samples.add_controller(self.document, 2, samples.end_mill(6), CuttingEdgeHeight=20.0),
+                 samples.add_controller(self.document, 3, drill, CuttingEdgeHeight=20.0)]
+        operations = [
+            samples.add_operation(self.document, "Profile", tools[0], "G0 Z5", "G0 X0 Y10", "G0 Z-6", "G1 Y30 F10",
+                                  "G2 X10 Y40 I10 J0", "G1 X50", "G2 X60 Y30 I0 J-10", "G1 Y10", "G2 X50 Y0 I-10 J0",
+                                  "G1 X10", "G2 X0 Y10 I0 J10", "G0 Z5"),
+            samples.add_operation(self.document, "Pocket", tools[1], "G0 X13 Y13 Z5", "G1 Z-4 F10", "G1 X27", "G1 Y21",
+                                  "G1 X13", "G1 Y13", "G1 Y17", "G1 X27", "G0 Z5"),
+            samples.add_operation(self.document, "Slot", tools[1], "G0 X38 Y12 Z5", "G1 Z-3 F10", "G1 X48", "G0 Z5"),
+            samples.add_operation(self.document, "Hole", tools[2], "G0 X42 Y26 Z5", "G1 Z-8 F10", "G0 Z5")]
+        job = samples.make_job(self.document, operations, tools, design=False,
+                               stock=Part.makeBox(60, 40, 10, FreeCAD.Vector(0, 0, -10)))
+        self.document.recompute()
+        found = simulation.simulate(simulation.make(job, 0.25))
+        corners = 4 - math.pi
+        volume = 24000 - (2400 - 1500 + corners * 25) * 6 - (20 * 14 - corners * 9) * 4 - (60 + math.pi * 9) * 3 \
+            - math.pi * 6.25 * (8 - cone + cone / 3)
+        shapes = [model.add_shape(found).Shape]
+        for name in ("part.step", "part.brep"):
+            model.export(found, self.path(name))
+            shapes.append(Part.Shape())
+            shapes[-1].read(self.path(name))
+        for shape in shapes:
+            self.assertTrue(shape.isValid() and len(shape.Solids) == 1 and shape.Solids[0].isClosed())
+            self.assertEqual(sorted(type(face.Surface).__name__ for face in shape.Faces),
+                             ["Cone"] + ["Cylinder"] * 11 + ["Plane"] * 19)
+            self.assertAlmostEqual(shape.Volume / volume, 1, delta=1e-9)
+            self.assertEqual(sorted(round(face.Surface.Radius, 6) for face in shape.Faces
+                                    if isinstance(face.Surface, Part.Cylinder)), [2.5] + [3.0] * 6 + [5.0] * 4)
+            curves = [type(edge.Curve).__name__ for edge in shape.Edges]
+            self.assertLessEqual(curves.count("BSplineCurve"), 2)  # FreeCAD's own seams of the hole and its cone
+            self.assertEqual(set(curves) - {"BSplineCurve"}, {"Line", "Circle"})
 
     def test_a_void_stays_one(self):
         mesh = Mesh.createBox(20.0, 20.0, 20.0)

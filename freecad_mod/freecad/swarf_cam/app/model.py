@@ -17,6 +17,8 @@ from ..core.errors import JobError
 from . import job as jobs
 from . import setups
 
+translate = FreeCAD.Qt.translate
+
 MESH_SUFFIXES = (".stl", ".ply", ".obj", ".3mf", ".glb")
 STOCK_SUFFIXES = (".vdb",)
 SHAPE_SUFFIXES = (".step", ".stp", ".brep", ".brp")
@@ -62,6 +64,7 @@ class Export:
         self.suffix = suffix_of(path)
         self.stock_file, self.up_to_date = obj.Stock, obj.UpToDate
         self._folder = None
+        self.analytic = None  # native.Analytic of a shape: what share of its faces is as they were cut
 
     def run(self, progress=None):
         """Number of triangles written (0: none). JobError, OSError, swarf.Error, swarf.Cancelled."""
@@ -70,14 +73,23 @@ class Export:
             return 0
         if self.data.moves is None:
             jobs.finish(self.data)
-        target = self.path
         if self.suffix in SHAPE_SUFFIXES:
-            self._folder = tempfile.TemporaryDirectory(prefix="swarf-")
-            target = os.path.join(self._folder.name, "stock.stl")
-        count = native.export(self.data, self.stock_file, target, progress=progress, **self.options)
-        if self._folder is not None:
+            return self._run_shape(progress)
+        return native.export(self.data, self.stock_file, self.path, progress=progress, **self.options)
+
+    def _run_shape(self, progress):
+        """The shape with faces as they were cut where that can be, and its mesh: for where it cannot."""
+        self._folder = tempfile.TemporaryDirectory(prefix="swarf-")
+        half = [progress and (lambda done, begin=begin: progress(begin + 0.5 * done)) for begin in (0, 0.5)]
+        self.analytic = native.export_analytic(self.data, self.stock_file, self._file("stock.step"),
+                                               self.options.get("largest", False), half[0])
+        count = native.export(self.data, self.stock_file, self._file("stock.stl"), progress=half[1], **self.options)
+        if self.analytic.reason is not None:
             _check_count(count)  # here nobody waits for it
         return count
+
+    def _file(self, name):
+        return os.path.join(self._folder.name, name)
 
     @property
     def unfinished(self):
@@ -95,13 +107,40 @@ class Export:
         if self._folder is None:
             return
         try:
-            shape = shape_of(Mesh.Mesh(os.path.join(self._folder.name, "stock.stl")))
+            shape = self._shape()
             if self.suffix in (".brep", ".brp"):
                 shape.exportBrep(self.path)
             else:
                 shape.exportStep(self.path)
         finally:
             self.discard()
+
+    def _shape(self):
+        """The analytic shape where it is sound, else that of the mesh; says which, and how much could have been
+        analytic."""
+        if self.analytic.reason is None:
+            shape = Part.Shape()
+            shape.read(self._file("stock.step"))
+            self.analytic.reason = _doubt(shape, self.analytic)
+            if self.analytic.reason is None:
+                FreeCAD.Console.PrintMessage(translate(
+                    "Swarf", "Swarf: the shape has {0} faces as they were cut: planes, cylinders, cones, spheres, tori\n"
+                ).format(self.analytic.faces))
+                return shape
+        FreeCAD.Console.PrintWarning(translate(
+            "Swarf", "Swarf: the shape is made of flat facets; {0:.1f} % of its surface is planes, cylinders, cones, spheres"
+            " and tori. Not all of it: {1}\n").format(100 * self.analytic.share, self.analytic.reason))
+        return shape_of(Mesh.Mesh(self._file("stock.stl")))
+
+
+def _doubt(shape, analytic):
+    """What is wrong with a shape made of analytic faces; None when nothing is."""
+    if not shape.Solids or not all(solid.isValid() and solid.isClosed() for solid in shape.Solids):
+        return "FreeCAD finds the solid not valid"
+    off = abs(sum(solid.Volume for solid in shape.Solids) - analytic.volume_mm3)
+    if off > analytic.error_mm * analytic.area_mm2:
+        return "its volume is off by %.3g mm3" % off
+    return None
 
 
 def export_steps(obj, path, **options):
@@ -158,9 +197,23 @@ def shape_of(mesh):
 
 
 def add_shape(obj):
-    """A Part object with the mesh of a simulation as a solid, in one undoable step -> it: what Path can take as the
-    stock of a job. JobError as shape_of()."""
-    return _add(obj, shape_of(obj.Mesh), "Shape", "Stock", FreeCAD.Qt.translate("Swarf", "Stock"))
+    """A Part object with what is left of the stock of a simulation as a solid, in one undoable step -> it: what Path can
+    take as the stock of a job. Its faces are as they were cut where that can be, and the job is as it was. JobError as
+    shape_of()."""
+    return _add(obj, _made_shape(obj) or shape_of(obj.Mesh), "Shape", "Stock", translate("Swarf", "Stock"))
+
+
+def _made_shape(obj):
+    """The shape of an export; None where there can be none."""
+    with tempfile.TemporaryDirectory(prefix="swarf-") as folder:
+        path = os.path.join(folder, "stock.brep")
+        try:
+            export(obj, path)
+        except JobError:
+            return None
+        shape = Part.Shape()
+        shape.read(path)
+        return shape
 
 
 def _add(obj, shape, transaction, name, label):
@@ -197,4 +250,4 @@ def section(obj, point, normal):
 
 def add_section(obj, point, normal):
     """A Part object with section() in the document, in one undoable step -> it."""
-    return _add(obj, section(obj, point, normal), "Section", "Section", FreeCAD.Qt.translate("Swarf", "Section"))
+    return _add(obj, section(obj, point, normal), "Section", "Section", translate("Swarf", "Section"))

@@ -73,7 +73,8 @@ class ExportPanel(TaskPanel):
         else:
             text = translate("Swarf", "{0:.2f} MB").format(size / 1e6)
         if self.suffix in model.SHAPE_SUFFIXES and triangles > model.SHAPE_TRIANGLES_MAX:
-            text += translate("Swarf", "; too many for a shape, allow a greater error")
+            text += translate(
+                "Swarf", "; too many for flat facets: a shape only if all its faces are planes, cylinders, cones, spheres and tori")
         self.estimate.setText(text)
 
     @property

@@ -115,8 +115,8 @@
             <translation>98 % liegen in</translation>
         </message>
         <message>
-            <source>; too many for a shape, allow a greater error</source>
-            <translation>; zu viele für eine Form, größeren Fehler erlauben</translation>
+            <source>; too many for flat facets: a shape only if all its faces are planes, cylinders, cones, spheres and tori</source>
+            <translation>; zu viele für ebene Facetten: ein Körper nur, wenn alle Flächen Ebenen, Zylinder, Kegel, Kugeln und Tori sind</translation>
         </message>
         <message>
             <source>A holder of the library, or form:r/z:r/z... from its lower face up, in mm</source>
@@ -718,6 +718,18 @@
             <source>Swarf: close the open task first
 </source>
             <translation>Swarf: schließen Sie zuerst die offene Aufgabe
+</translation>
+        </message>
+        <message>
+            <source>Swarf: the shape has {0} faces as they were cut: planes, cylinders, cones, spheres, tori
+</source>
+            <translation>Swarf: der Körper hat {0} Flächen, wie sie geschnitten wurden: Ebenen, Zylinder, Kegel, Kugeln, Tori
+</translation>
+        </message>
+        <message>
+            <source>Swarf: the shape is made of flat facets; {0:.1f} % of its surface is planes, cylinders, cones, spheres and tori. Not all of it: {1}
+</source>
+            <translation>Swarf: der Körper besteht aus ebenen Facetten; {0:.1f} % seiner Oberfläche sind Ebenen, Zylinder, Kegel, Kugeln und Tori. Nicht alles: {1}
 </translation>
         </message>
         <message>

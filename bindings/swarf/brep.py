@@ -1,0 +1,380 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From a mesh on the exact surface to the solid that it is of: planes, cylinders, cones, spheres and tori, with the
+edges in which they meet.
+
+    triangles of one shape that hang together   a region, later a face
+    mesh edges between the same two regions     a chain, later an edge
+    mesh vertices where more chains end         corners
+
+The mesh tells only what is beside what; where corners and edges lie is solved on the shapes. Faces that go on smoothly
+into each other have no edge in the mesh: there the chain wanders by about a voxel, and their line of contact is solved."""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Optional, Sequence
+
+from ._native import Mesh, Surface
+from .progress import Report, check, share
+from .regions import Regions, find
+from .shapes import CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet, on, tangency, unit
+
+__all__ = ["CONE", "CYLINDER", "PLANE", "SPHERE", "TORUS", "Brep", "Edge", "Face", "NotAnalytic", "make"]
+
+#: mm; what shapes that should meet may miss each other by: the last digits of programs are twice that, and an edge is
+#: told to be as inexact as it is.
+SLOPPY = 2e-3
+
+#: mm; what an edge that is told to be a line, a circle or a curve may be off.
+CLOSE = 1e-6
+
+#: mm; what curves between others than these may be off.
+CURVE = 1e-5
+
+#: Cosine of the angle from which on faces cross and do not touch, as far as the mesh can tell.
+CROSSING = 0.8
+
+
+#: Points of an edge that are looked at, about.
+MOST_SAMPLES = 32
+
+
+class NotAnalytic(ValueError):
+    """A stock that is not bounded by these faces alone, or whose edges are not found. ``share``: part of the area that
+    lies on such faces."""
+
+    def __init__(self, text: str, share: float) -> None:
+        super().__init__(text)
+        self.share = share
+
+
+@dataclass
+class Edge:
+    """From corner to corner: a line; a circle about ``centre``, counter-clockwise seen against ``axis``; or, where
+    ``axis`` is None and there are points, a smooth curve through them with those directions."""
+
+    start: int
+    end: int
+    centre: Optional[Vector] = None
+    axis: Optional[Vector] = None
+    radius: float = 0.0
+    points: list[Vector] = field(default_factory=list)
+    directions: list[Vector] = field(default_factory=list)
+
+
+@dataclass
+class Face:
+    """Part of a shape; ``outwards``: its natural normal (a plane's own, away from an axis or a tube) leaves the
+    material. Each loop has the face on its left seen from outside: numbers of edges and whether they go forwards."""
+
+    shape: Shape
+    outwards: bool
+    loops: list[list[tuple[int, bool]]]
+
+
+@dataclass
+class Brep:
+    """Solids as faces, edges and corners; ``shells``: faces that hang together; ``inexact_mm``: by how much faces miss
+    each other at edges, for the digits of the program."""
+
+    corners: list[Vector]
+    edges: list[Edge]
+    faces: list[Face]
+    shells: list[list[int]]
+    inexact_mm: float
+
+
+@dataclass
+class _Chain:
+    """Mesh vertices from corner to corner, the left region's half-edges going along."""
+
+    left: int
+    right: int
+    vertices: list[int]
+    closed: bool
+    touching: bool = False
+
+
+class _Maker:
+    """One solid in the making."""
+
+    def __init__(self, regions: Regions, voxel: float) -> None:
+        self.regions, self.voxel = regions, voxel
+        self.left = 0.0  # what equations are off, mm
+        self.chains: list[_Chain] = []
+        self.chain_of: dict[tuple[int, int], tuple[int, bool]] = {}  # half-edge of a border -> its chain, forwards
+        self.corner_of: dict[int, int] = {}
+
+    def fail(self, text: str) -> NotAnalytic:
+        return NotAnalytic(text, self.regions.known_share)
+
+    # ---- what is beside what ----
+
+    def find_chains(self) -> None:
+        """Borders between regions, cut where more than two of them meet."""
+        borders = self.regions.borders()
+        ways: dict[int, list[tuple[int, int]]] = {}
+        for u, v in borders:
+            ways.setdefault(u, []).append((u, v))
+        corners = {vertex for vertex, out in ways.items() if len(out) != 2}
+        taken: set[tuple[int, int]] = set()
+        for begin in sorted(corners) + sorted(ways):
+            for first in ways[begin]:
+                if first in taken or borders[first][0] > borders[first][1]:
+                    continue
+                self._follow(first, borders, ways, corners, taken)
+
+    def _follow(self, first: tuple[int, int], borders: dict[tuple[int, int], tuple[int, int]],
+                ways: dict[int, list[tuple[int, int]]], corners: set[int], taken: set[tuple[int, int]]) -> None:
+        left, right = borders[first]
+        vertices, half = [first[0]], first
+        number = len(self.chains)
+        while True:
+            taken.update((half, (half[1], half[0])))
+            self.chain_of[half] = number, True
+            self.chain_of[half[1], half[0]] = number, False
+            vertices.append(half[1])
+            if half[1] in corners or half[1] == first[0]:
+                break
+            half = next(way for way in ways[half[1]] if way[1] != half[0])
+        self.chains.append(_Chain(left, right, vertices, vertices[0] == vertices[-1] and vertices[0] not in corners))
+
+    # ---- where it lies ----
+
+    def shape(self, region: int) -> Shape:
+        return self.regions.shape[region]
+
+    def equations(self, regions: Sequence[int]) -> list[Equations]:
+        return [on(self.shape(region)) for region in regions]
+
+    def contact(self, chain: _Chain) -> list[Equations]:
+        """What holds along a chain."""
+        found = self.equations((chain.left, chain.right))
+        if chain.touching:
+            found.append(self.touch(chain))
+        return found
+
+    def touch(self, chain: _Chain) -> Equations:
+        a, b = chain.left, chain.right
+        return tangency(self.shape(a), self.shape(b), self.regions.outwards[a] == self.regions.outwards[b])
+
+    def tell_touching(self, chain: _Chain) -> None:
+        """Whether the faces beside a chain go on smoothly into each other."""
+        place = self.regions.vertices[chain.vertices[len(chain.vertices) // 2]]
+        if len(chain.vertices) == 2:
+            other = self.regions.vertices[chain.vertices[0]]
+            place = add(other, add(place, other, -1), 0.5)
+        (_, a), (_, b) = (self.shape(region).see(place) for region in (chain.left, chain.right))
+        same_way = self.regions.outwards[chain.left] == self.regions.outwards[chain.right]
+        if (dot(a, b) if same_way else -dot(a, b)) < CROSSING:
+            return
+        chain.touching = True
+        found = meet(self.contact(chain), place)
+        chain.touching = found is not None and found[1] < SLOPPY and distance(found[0], place) < 3 * self.voxel
+
+    def solve(self, equations: Sequence[Equations], start: Vector, what: str) -> Vector:
+        found = meet(equations, start)
+        if found is None or found[1] > SLOPPY or distance(found[0], start) > 4 * self.voxel:
+            raise self.fail("%s is not found near (%.3f, %.3f, %.3f)" % (what, *start))
+        self.left = max(self.left, found[1])
+        return found[0]
+
+    def place_corners(self) -> list[Vector]:
+        """Corners, each where its faces meet."""
+        meeting: dict[int, list[Equations]] = {}
+        beside: dict[int, set[int]] = {}
+        for chain in self.chains:
+            for vertex in (chain.vertices[0], chain.vertices[-1]):
+                beside.setdefault(vertex, set()).update((chain.left, chain.right))
+                if chain.touching:
+                    meeting.setdefault(vertex, []).append(self.touch(chain))
+        corners: list[Vector] = []
+        for vertex in sorted(beside):
+            place = self.solve(self.equations(sorted(beside[vertex])) + meeting.get(vertex, []),
+                               self.regions.vertices[vertex], "a corner")
+            same = (k for k, corner in enumerate(corners) if distance(corner, place) < SLOPPY)
+            self.corner_of[vertex] = next(same, len(corners))
+            if self.corner_of[vertex] == len(corners):
+                corners.append(place)
+        return corners
+
+    def is_point(self, chain: _Chain) -> bool:
+        """Whether a chain has no length: where four faces meet in a point, the mesh has two corners beside each other."""
+        start, end = chain.vertices[0], chain.vertices[-1]
+        return not chain.closed and self.corner_of[start] == self.corner_of[end] and all(
+            distance(self.regions.vertices[vertex], self.regions.vertices[start]) < 4 * self.voxel
+            for vertex in chain.vertices)
+
+    def samples(self, chain: _Chain, start: Vector, end: Vector) -> list[Vector]:
+        """Points of the edge from end to end, in order: the mesh's own and some between them."""
+        equations = self.contact(chain)
+        mesh = [self.regions.vertices[vertex] for vertex in chain.vertices]
+        if chain.touching and not chain.closed and len(mesh) > 3:  # it wanders: what is near the ends may lie beyond
+            mesh = [mesh[0]] + [p for p in mesh[1:-1]
+                                if min(distance(p, mesh[0]), distance(p, mesh[-1])) > 2 * self.voxel] + [mesh[-1]]
+        mesh = mesh[:-1:1 + len(mesh) // MOST_SAMPLES] + mesh[-1:]
+        found = [start]
+        for a, b in zip(mesh, mesh[1:]):
+            parts = 4 if len(mesh) == 2 else 2 if len(mesh) < 5 else 1
+            for part in range(1, parts + 1):
+                if b is mesh[-1] and part == parts:
+                    break
+                found.append(self.solve(equations, add(a, add(b, a, -1), part / parts), "an edge"))
+        if chain.touching:
+            found = _forwards(found, end)
+        return found + [end]
+
+    def edge(self, chain: _Chain, corners: list[Vector]) -> Edge:
+        """The curve of a chain."""
+        start, end = self.corner_of[chain.vertices[0]], self.corner_of[chain.vertices[-1]]
+        points = self.samples(chain, corners[start], corners[end])
+        close = CLOSE + 2 * self.left
+        if start != end and _is_line(points, close):
+            return Edge(start, end)
+        circle = _circle(self.shape(chain.left), self.shape(chain.right), points, close)
+        if circle is not None:
+            centre, axis, radius = circle
+            turn = sum(dot(cross(add(a, centre, -1), add(b, centre, -1)), axis) for a, b in zip(points, points[1:]))
+            return Edge(start, end, centre, axis if turn > 0 else (-axis[0], -axis[1], -axis[2]), radius)
+        return self.curve(chain, start, end, points)
+
+    def curve(self, chain: _Chain, start: int, end: int, points: list[Vector]) -> Edge:
+        """A curve of cubics, finer and finer until their middles are on it."""
+        equations = self.contact(chain)
+        (left, right), directions = (self.shape(region) for region in (chain.left, chain.right)), []
+        for k, point in enumerate(points):
+            way = add(points[min(k + 1, len(points) - 1)], points[max(k - 1, 0)], -1)
+            if chain.touching:
+                raise self.fail("two faces touch along a curve that is no line and no circle")
+            direction = unit(cross(left.see(point)[1], right.see(point)[1]))
+            directions.append(direction if dot(direction, way) > 0 else add((0.0, 0.0, 0.0), direction, -1))
+        k = 0
+        while k + 1 < len(points):
+            length = distance(points[k], points[k + 1])
+            middle = add(add(points[k], add(points[k + 1], points[k], -1), 0.5),
+                         add(directions[k], directions[k + 1], -1), length / 8)
+            true = self.solve(equations, middle, "an edge")
+            if distance(true, middle) < CURVE or length < 1e-3 * self.voxel:
+                k += 1
+                continue
+            direction = unit(cross(left.see(true)[1], right.see(true)[1]))
+            if dot(direction, add(points[k + 1], points[k], -1)) < 0:
+                direction = add((0.0, 0.0, 0.0), direction, -1)
+            points.insert(k + 1, true)
+            directions.insert(k + 1, direction)
+        return Edge(start, end, points=points, directions=directions)
+
+    def make(self, progress: Report) -> Brep:
+        self.find_chains()
+        for chain in self.chains:
+            self.tell_touching(chain)
+        corners = self.place_corners_and_closed()
+        edges: list[Edge] = []
+        edge_of: dict[int, int] = {}
+        for number, chain in enumerate(self.chains):
+            check(progress, number / len(self.chains))
+            if not self.is_point(chain):
+                edge_of[number] = len(edges)
+                edges.append(self.edge(chain, corners))
+        faces, shells = [], {}
+        for region, loops in enumerate(self.regions.loops()):
+            if not loops:
+                raise self.fail("a face without any edge")
+            made = []
+            for loop in loops:
+                steps = [self.chain_of[half] for half in loop]
+                kept = [(edge_of[chain], forwards) for k, (chain, forwards) in enumerate(steps)
+                        if loop[k][0] in self.corner_of and chain in edge_of]
+                if not kept:
+                    raise self.fail("a face that is a point")
+                made.append(kept)
+            faces.append(Face(self.shape(region), self.regions.outwards[region], made))
+            shells.setdefault(self.regions.shell[region], []).append(region)
+        made = Brep(corners, edges, faces, [shells[key] for key in sorted(shells)], self.left)
+        self.check(made)
+        return made
+
+    def check(self, made: Brep) -> None:
+        """Every loop closes, every edge is between two faces, once forwards and once back."""
+        used: set[tuple[int, bool]] = set()
+        for face in made.faces:
+            for loop in face.loops:
+                ends = [(made.edges[edge].start, made.edges[edge].end)[::1 if forwards else -1] for edge, forwards in loop]
+                if any(end != start for (_, end), (start, _) in zip(ends, ends[1:] + ends[:1])):
+                    raise self.fail("the edges of a face do not close")
+                if used & set(loop):
+                    raise self.fail("an edge is used twice")
+                used.update(loop)
+        if len(used) != 2 * len(made.edges):
+            raise self.fail("an edge has no face on one side")
+
+    def place_corners_and_closed(self) -> list[Vector]:
+        """Corners, and on edges that close without one, a point of them."""
+        closed = [chain for chain in self.chains if chain.closed]
+        open_chains, self.chains = [chain for chain in self.chains if not chain.closed], self.chains
+        every, self.chains = self.chains, open_chains
+        corners = self.place_corners()
+        self.chains = every
+        for chain in closed:
+            vertex = chain.vertices[0]
+            self.corner_of[vertex] = len(corners)
+            corners.append(self.solve(self.contact(chain), self.regions.vertices[vertex], "an edge"))
+        return corners
+
+
+def _forwards(points: list[Vector], end: Vector) -> list[Vector]:
+    """Points without those that turn back."""
+    kept = points[:1]
+    for point in points[1:]:
+        if len(kept) < 2 or dot(add(point, kept[-1], -1), add(kept[-1], kept[-2], -1)) > 0:
+            kept.append(point)
+    while len(kept) > 2 and dot(add(end, kept[-1], -1), add(kept[-1], kept[-2], -1)) <= 0:
+        kept.pop()
+    return kept
+
+
+def _is_line(points: list[Vector], close: float) -> bool:
+    way = add(points[-1], points[0], -1)
+    length = math.hypot(*way)
+    return length > 0 and all(math.hypot(*cross(add(point, points[0], -1), way)) <= close * length for point in points)
+
+
+def _turn_axes(shape: Shape) -> Optional[Vector]:
+    """Direction about which a shape looks the same all round; None where that is any."""
+    return None if shape.kind == SPHERE else shape.axis
+
+
+def _circle(a: Shape, b: Shape, points: list[Vector], close: float) -> Optional[tuple[Vector, Vector, float]]:
+    """Centre, axis and radius of the circle through points of two shapes that turn about one axis; None where there is
+    none."""
+    turning = sorted((shape for shape in (a, b) if shape.kind != PLANE), key=lambda shape: shape.kind == SPHERE)
+    if not turning:
+        return None
+    axis, foot = _turn_axes(turning[0]), turning[0].point
+    if axis is None:
+        flat = next((shape for shape in (a, b) if shape.kind == PLANE), None)
+        axis = flat.axis if flat is not None else unit(add(a.point, b.point, -1))
+    along = dot(add(points[0], foot, -1), axis)
+    centre = add(foot, axis, along)
+    radius = distance(points[0], centre)
+    if radius <= close or not all(
+            abs(distance(point, centre) - radius) <= close and abs(dot(add(point, centre, -1), axis)) <= close
+            for point in points):
+        return None
+    return centre, axis, radius
+
+
+def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = None, progress: Report = None) -> Brep:
+    """The solid of a closed mesh on a Surface, made of voxels this large (mm), with little left out of it
+    (Mesh.from_stock(error=voxel / 50)). NotAnalytic where it is not bounded by planes, cylinders, cones, spheres and tori
+    alone; ValueError for a mesh that is empty or open."""
+    if not mesh.triangle_count or not mesh.closed:
+        raise ValueError("a solid is made of a closed mesh")
+    if any(shell.volume_mm3 <= 0 for shell in mesh.shells()):
+        raise NotAnalytic("there is a hollow inside", 0.0)
+    regions = find(mesh, surface, voxel, moves, share(progress, 0, 0.5))
+    if regions.unknown:
+        x, y, z = regions.unknown[0]
+        raise NotAnalytic("%.1f %% of the surface is on planes, cylinders, cones, spheres and tori, but not what is near "
+                          "(%.2f, %.2f, %.2f)" % (100 * regions.known_share, x, y, z), regions.known_share)
+    return _Maker(regions, voxel).make(share(progress, 0.5, 1))

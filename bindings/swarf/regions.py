@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parts of a mesh that lie on one shape: what each triangle is on, what hangs together, and how small mistakes about
+edges and smooth joints are mended."""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Optional
+
+from ._native import Mesh, Surface
+from .progress import Report, check, share
+from .shapes import Shape, Vector, add, cross, dot
+
+#: mm; shapes that differ by less are one: what the digits of a program leave open.
+SAME = 1e-4
+
+#: In voxels: what lies within the first of a neighbour's shape and is narrower than the second was told wrongly; it is
+#: the neighbour's.
+NEAR, NARROW = 0.1, 1.0
+
+#: How often what is left is looked at again.
+ROUNDS = 20
+
+
+@dataclass
+class Regions:
+    """A mesh in parts; lists by region but for the first three."""
+
+    vertices: list[Vector]
+    triangles: list[list[int]]
+    region_of: list[int]  #: of a triangle
+    across: dict[tuple[int, int], int]  #: half-edge -> its triangle
+    shape: list[Shape]
+    outwards: list[bool]  #: whether its shape's gradient leaves the material
+    shell: list[int]  #: pieces of surface that hang together
+    known_share: float  #: of the area, on planes, cylinders, cones, spheres and tori
+    unknown: list[Vector]  #: places where none of them is
+
+    def borders(self) -> dict[tuple[int, int], tuple[int, int]]:
+        """Half-edges between regions: (the region on the left, that on the right)."""
+        found = {}
+        for (u, v), triangle in self.across.items():
+            left, right = self.region_of[triangle], self.region_of[self.across[v, u]]
+            if left != right:
+                found[u, v] = left, right
+        return found
+
+    def loops(self) -> list[list[list[tuple[int, int]]]]:
+        """Half-edges round each region, loop by loop."""
+        borders = self.borders()
+        found: list[list[list[tuple[int, int]]]] = [[] for _ in self.shape]
+        left = dict.fromkeys(sorted(borders))
+        while left:
+            first = half = next(iter(left))
+            loop = []
+            while half in left:
+                del left[half]
+                loop.append(half)
+                half = self._next(half)
+            if half != first:
+                raise ValueError("a mesh whose edges do not close")
+            found[borders[first][0]].append(loop)
+        return found
+
+    def _next(self, half: tuple[int, int]) -> tuple[int, int]:
+        """The half-edge of a region's border that follows, turning about its end inside the region."""
+        region = self.region_of[self.across[half]]
+        u, v = half
+        while True:
+            a, b, c = self.triangles[self.across[u, v]]
+            w = c if v == b else a if v == c else b
+            if self.region_of[self.across[w, v]] != region:
+                return v, w
+            u = w
+
+
+def _area(vertices: list[Vector], triangle: list[int]) -> Vector:
+    """Twice the area of a triangle, along its normal."""
+    a, b, c = (vertices[corner] for corner in triangle)
+    return cross(add(b, a, -1), add(c, a, -1))
+
+
+class _Parts:
+    """Shapes of triangles, gathered and mended."""
+
+    def __init__(self, mesh: Mesh, rows: list[list[float]], voxel: float) -> None:
+        self.voxel = voxel
+        self.vertices: list[Vector] = [(x, y, z) for x, y, z in mesh.vertices.tolist()]
+        self.triangles: list[list[int]] = mesh.triangles.tolist()
+        self.across = {}
+        for number, (a, b, c) in enumerate(self.triangles):
+            self.across[a, b] = self.across[b, c] = self.across[c, a] = number
+        self.area = [math.hypot(*_area(self.vertices, triangle)) / 2 for triangle in self.triangles]
+        lo, hi = mesh.bounding_box
+        self.directions = SAME / max(math.dist(lo, hi), SAME)
+        self.shapes: list[Optional[Shape]] = [None]  # the first is what is not known
+        numbers: dict[tuple[float, ...], int] = {}
+        self.shape_of = []
+        for row in rows:
+            key = tuple(row)
+            if key not in numbers:
+                numbers[key] = self._number(Shape.of_row(row)) if row[0] else 0
+            self.shape_of.append(numbers[key])
+
+    def _number(self, shape: Shape) -> int:
+        for number, other in enumerate(self.shapes):
+            if other is not None and other.is_same(shape, SAME, self.directions):
+                return number
+        self.shapes.append(shape)
+        return len(self.shapes) - 1
+
+    def components(self) -> tuple[list[int], list[list[int]]]:
+        """Region of each triangle, triangles of each region."""
+        region_of, members = [-1] * len(self.triangles), []
+        for first in range(len(self.triangles)):
+            if region_of[first] >= 0:
+                continue
+            region_of[first] = len(members)
+            found, at = [first], 0
+            while at < len(found):
+                a, b, c = self.triangles[found[at]]
+                for edge in ((b, a), (c, b), (a, c)):
+                    other = self.across[edge]
+                    if region_of[other] < 0 and self.shape_of[other] == self.shape_of[first]:
+                        region_of[other] = len(members)
+                        found.append(other)
+                at += 1
+            members.append(found)
+        return region_of, members
+
+    def fits(self, triangles: list[int], number: int) -> bool:
+        """Whether triangles lie near a shape."""
+        shape = self.shapes[number]
+        corners = {corner for triangle in triangles for corner in self.triangles[triangle]}
+        return shape is not None and all(abs(shape.see(self.vertices[corner])[0]) <= NEAR * self.voxel
+                                         for corner in corners)
+
+    def give(self, triangles: list[int], numbers: dict[int, float]) -> bool:
+        """Give triangles to the shape beside them that fits, the one with the longest border first."""
+        for number in sorted(numbers, key=lambda other: (-numbers[other], other)):
+            if self.fits(triangles, number):
+                for triangle in triangles:
+                    self.shape_of[triangle] = number
+                return True
+        return False
+
+    def mend(self) -> bool:
+        """Narrow regions that a neighbour's shape fits as well become its; whether there was any."""
+        region_of, members = self.components()
+        changed = False
+        for region in sorted(range(len(members)), key=lambda one: sum(self.area[t] for t in members[one])):
+            border: dict[int, float] = {}
+            own = self.shape_of[members[region][0]]
+            for triangle in members[region]:
+                a, b, c = self.triangles[triangle]
+                for u, v in ((a, b), (b, c), (c, a)):
+                    other = self.shape_of[self.across[v, u]]
+                    if region_of[self.across[v, u]] != region and other != own:
+                        border[other] = border.get(other, 0.0) + math.dist(self.vertices[u], self.vertices[v])
+            area = sum(self.area[triangle] for triangle in members[region])
+            if border and 2 * area < NARROW * self.voxel * sum(border.values()):
+                changed |= self.give(members[region], border)
+        return changed
+
+    def unpinch(self) -> bool:
+        """Where two regions meet twice at a vertex, the smaller triangles there go over; whether there was any."""
+        ways: dict[int, list[tuple[int, int]]] = {}
+        for (u, v), triangle in self.across.items():
+            if self.shape_of[triangle] != self.shape_of[self.across[v, u]]:
+                ways.setdefault(u, []).append((u, v))
+        changed = False
+        for vertex in sorted(ways):
+            fans = self._fans(vertex, ways[vertex])
+            if len(fans) < 4 or len({self.shape_of[fan[0]] for fan in fans}) == len(fans):
+                continue
+            for fan in sorted(fans, key=lambda one: sum(self.area[t] for t in one)):
+                beside = {self.shape_of[t]: 1.0 for other in fans for t in other[:1]
+                          if self.shape_of[t] != self.shape_of[fan[0]]}
+                twice = sum(self.shape_of[other[0]] == self.shape_of[fan[0]] for other in fans) > 1
+                if twice and self.give(fan, beside):
+                    changed = True
+                    break
+        return changed
+
+    def _fans(self, vertex: int, ways: list[tuple[int, int]]) -> list[list[int]]:
+        """Triangles about a vertex between borders."""
+        fans = []
+        for _, v in ways:
+            fan, at = [], v
+            while True:
+                triangle = self.across[vertex, at]
+                fan.append(triangle)
+                a, b, c = self.triangles[triangle]
+                at = c if vertex == a else a if vertex == b else b
+                if (vertex, at) in ways:
+                    break
+            fans.append(fan)
+        return fans
+
+
+def _shells(region_of: list[int], across: dict[tuple[int, int], int], count: int) -> list[int]:
+    """Number of the piece of surface of each region."""
+    root = list(range(count))
+
+    def top(one: int) -> int:
+        while root[one] != one:
+            root[one] = root[root[one]]
+            one = root[one]
+        return one
+
+    for (u, v), triangle in across.items():
+        a, b = top(region_of[triangle]), top(region_of[across[v, u]])
+        root[max(a, b)] = min(a, b)
+    return [top(one) for one in range(count)]
+
+
+def find(mesh: Mesh, surface: Surface, voxel: float, moves: Optional[int] = None, progress: Report = None) -> Regions:
+    """The regions of a closed mesh on a Surface."""
+    rows = mesh.faces(surface, moves=moves, progress=share(progress, 0, 0.5)).tolist()
+    parts = _Parts(mesh, rows, voxel)
+    whole = sum(parts.area)
+    for number in range(ROUNDS):
+        check(progress, 0.5 + 0.5 * number / ROUNDS)
+        if not (parts.mend() | parts.unpinch()):
+            break
+    region_of, members = parts.components()
+    shapes, outwards, unknown, lost = [], [], [], 0.0
+    for triangles in members:
+        shape = parts.shapes[parts.shape_of[triangles[0]]]
+        area = sum(parts.area[triangle] for triangle in triangles)
+        if shape is None:
+            lost += area
+            at = max(triangles, key=lambda triangle: parts.area[triangle])
+            a, b, c = (parts.vertices[corner] for corner in parts.triangles[at])
+            unknown.append(((a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3))
+            continue
+        way = 0.0
+        for triangle in triangles:
+            a, b, c = (parts.vertices[corner] for corner in parts.triangles[triangle])
+            middle = ((a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3)
+            way += dot(shape.see(middle)[1], _area(parts.vertices, parts.triangles[triangle]))
+        shapes.append(shape)
+        outwards.append(way > 0)
+    if unknown:
+        shapes, outwards = [], []
+    return Regions(parts.vertices, parts.triangles, region_of, parts.across, shapes, outwards,
+                   _shells(region_of, parts.across, len(members)), 1 - lost / whole if whole > 0 else 0.0, unknown)

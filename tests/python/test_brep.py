@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Analytic faces: shapes against what they promise, solids against closed forms, and what is none."""
+import math
+import random
+import re
+
+import pytest
+
+import swarf
+from swarf import brep, regions, shapes, step
+from swarf.job import Job
+from swarf.shapes import CONE, CYLINDER, PLANE, SPHERE, TORUS, Shape, add, dot
+
+VOXEL = 0.4
+BLOCK = {"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)}
+
+
+def cut(tool, *moves, stock=None):
+    """(mesh, surface) of a block after moves: places, and arcs (end, centre)."""
+    program = swarf.Program(start=moves[0])
+    program.add_operation("cut")
+    program.set_section(tool=1)
+    for move in moves[1:]:
+        if len(move) == 2:
+            program.add_arc(move[0], move[1], ccw=True, feed_mm_min=100)
+        else:
+            program.add_line(move, feed_mm_min=100)
+    job = Job(name="cut", program=program, tools={1: swarf.Cutter(tool)}, stock=stock or BLOCK)
+    made = swarf.simulate(job, voxel=VOXEL, compare=False)
+    return swarf.Mesh.from_stock(made.stock, 0.02 * VOXEL, surface=made.surface), made.surface
+
+
+@pytest.mark.parametrize("shape", [
+    Shape(PLANE, (1, 2, 3), (0.6, 0, 0.8), 0, 0), Shape(CYLINDER, (1, 2, 3), (0.6, 0, 0.8), 2, 0),
+    Shape(CONE, (1, 2, 3), (0.6, 0, 0.8), 0, 0.5), Shape(SPHERE, (1, 2, 3), (0, 0, 0), 2, 0),
+    Shape(TORUS, (1, 2, 3), (0.6, 0, 0.8), 3, 1)])
+def test_distances(shape):
+    random.seed(5)
+    for _ in range(50):
+        place = tuple(random.uniform(-6, 6) for _ in range(3))
+        value, gradient = shape.see(place)
+        assert math.hypot(*gradient) == pytest.approx(1)
+        foot = add(place, gradient, -value)
+        if shape.kind in (PLANE, CYLINDER, SPHERE, CONE) and value > 0:  # inside, the foot may be beyond an apex
+            assert shape.see(foot)[0] == pytest.approx(0, abs=1e-12)
+        steps = [tuple(1e-6 * (k == i) for i in range(3)) for k in range(3)]
+        slope = [(shape.see(add(place, way))[0] - shape.see(add(place, way, -1))[0]) / 2e-6 for way in steps]
+        assert slope == pytest.approx(gradient, abs=1e-5)
+    assert shape.is_same(shape, 1e-9, 1e-9)
+    moved = Shape(shape.kind, add(shape.point, (0.01, 0, 0)), shape.axis, shape.radius, shape.second)
+    assert not shape.is_same(moved, 1e-4, 1e-6) and shape.is_same(moved, 0.1, 1e-6)
+
+
+def test_where_shapes_meet():
+    sphere = Shape(SPHERE, (0, 0, 0), (0, 0, 0), 2, 0)
+    planes = [Shape(PLANE, (0.5, 0, 0), (1, 0, 0), 0, 0), Shape(PLANE, (0, 0.5, 0), (0, 1, 0), 0, 0)]
+    place, left = shapes.meet([shapes.on(shape) for shape in (sphere, *planes)], (0.4, 0.6, 2.2))
+    assert left < 1e-12 and place == pytest.approx((0.5, 0.5, math.sqrt(3.5)))
+    wall = Shape(PLANE, (2, 0, 0), (1, 0, 0), 0, 0)  # touches the sphere in a point
+    place, left = shapes.meet([shapes.on(sphere), shapes.on(wall), shapes.tangency(sphere, wall, True)], (1.9, 0.3, -0.2))
+    assert left < 1e-9 and place == pytest.approx((2, 0, 0), abs=1e-8)
+
+
+@pytest.mark.parametrize("tool, moves, faces, edges", [
+    ("flat:d=6,l=20", ((10, 20, 5), (10, 20, -4), (50, 20, -4)), {PLANE: 9, CYLINDER: 2}, 24),  # a slot
+    ("flat:d=6,l=20", ((30, 20, 5), (30, 20, -12)), {PLANE: 6, CYLINDER: 1}, 14),  # a hole through
+    ("drill:d=6,l=20,a=90", ((30, 20, 5), (30, 20, -7)), {PLANE: 6, CYLINDER: 1, CONE: 1}, 14),
+    ("bull:d=8,r=1,l=20", ((30, 20, 5), (30, 20, -4)), {PLANE: 7, CYLINDER: 1, TORUS: 1}, 15),
+    ("ball:d=6,l=20", ((10, 20, 5), (10, 20, -5), (50, 20, -5)), {PLANE: 8, CYLINDER: 3, SPHERE: 2}, 26),
+    # down a slope: four faces meet in one point at the ends
+    ("ball:d=6,l=20", ((10, 20, 5), (10, 20, -4), (50, 25, -6)), {PLANE: 8, CYLINDER: 3, SPHERE: 2}, 26),
+    ("flat:d=6,l=20", ((10, 20, 5), (10, 20, -4), (20, 20, -4), ((20, 30, -4), (20, 25, -4))), {PLANE: 9, CYLINDER: 4}, 30),
+    ("flat:d=6,l=20", ((-5, 20, 5), (-5, 20, -4), (65, 20, -4), (65, 20, 5), (30, -5, 5), (30, -5, -2), (30, 45, -2)),
+     {PLANE: 18}, 48),  # two grooves that cross
+])
+def test_solids(tool, moves, faces, edges, tmp_path):
+    mesh, surface = cut(tool, *moves)
+    made = brep.make(mesh, surface, VOXEL)
+    kinds = [face.shape.kind for face in made.faces]
+    assert {kind: kinds.count(kind) for kind in kinds} == faces
+    assert len(made.edges) == edges and made.inexact_mm < 1e-9 and len(made.shells) == 1
+    for face in made.faces:  # ends and middles of edges are on both faces
+        for number, _ in (one for loop in face.loops for one in loop):
+            edge = made.edges[number]
+            for corner in (edge.start, edge.end):
+                assert abs(face.shape.see(made.corners[corner])[0]) < 1e-9
+            if edge.axis is not None:
+                out = add(made.corners[edge.start], edge.centre, -1)
+                assert abs(dot(out, edge.axis)) < 1e-9 and math.hypot(*out) == pytest.approx(edge.radius)
+    step.write(made, tmp_path / "part.step", "it's")
+    text = (tmp_path / "part.step").read_text()
+    assert text.count("ADVANCED_FACE(") == len(kinds) and text.count("EDGE_CURVE(") == edges and "it''s" in text
+    names = set(re.findall(r"^(#\d+)=", text, re.M))
+    assert set(re.findall(r"#\d+", text)) == names  # all that is named is there
+    assert list(tmp_path.iterdir()) == [tmp_path / "part.step"]
+
+
+def test_moves_that_go_on_make_one_face():
+    mesh, surface = cut("flat:d=6,l=20", (10, 20, 5), (10, 20, -4), (22.3, 20, -4), (41.7, 20, -4), (50, 20, -4))
+    assert len(brep.make(mesh, surface, VOXEL).faces) == 11
+
+
+def test_what_crosses_along_curves():
+    """Two holes across each other: their edge is no line and no circle."""
+    mesh, surface = cut("drill:d=6,l=20,a=90", (30, 20, 5), (30, 20, -7), (30, 20, 5), (30, 24, 5), (30, 24, -6))
+    made = brep.make(mesh, surface, VOXEL)
+    curves = [edge for edge in made.edges if edge.points]
+    assert curves and all(len(edge.points) == len(edge.directions) > 1 for edge in curves)
+    for edge in curves:
+        beside = [face.shape for face in made.faces if any(made.edges[n] is edge for loop in face.loops for n, _ in loop)]
+        assert len(beside) == 2
+        assert all(abs(shape.see(point)[0]) < 1e-6 for shape in beside for point in edge.points)
+    assert "B_SPLINE_CURVE_WITH_KNOTS" in step.text(made)
+
+
+def test_what_is_no_such_solid(tmp_path):
+    with pytest.raises(brep.NotAnalytic, match="% of the surface is on planes") as told:
+        brep.make(*cut("flat:d=6,l=20", (10, 20, 0), (50, 20, -8)), VOXEL)  # the rim of a disc on a slope
+    assert 0.9 < told.value.share < 1
+    with pytest.raises(brep.NotAnalytic) as told:
+        brep.make(*cut("flat:d=6,l=20", (10, 20, 5), (10, 20, 4), stock={
+            "kind": "cylinder", "base": (20, 20, -10), "axis": (0, 0, 10), "radius": 15}), VOXEL)
+    assert told.value.share < 0.01
+    mesh, surface = cut("flat:d=6,l=20", (10, 20, 5), (10, 20, -4))
+    for open_mesh in (swarf.Mesh([], []), swarf.Mesh(mesh.vertices, mesh.triangles.tolist()[1:])):
+        with pytest.raises(ValueError, match="closed"):
+            brep.make(open_mesh, surface, VOXEL)
+    made = brep.make(mesh, surface, VOXEL)
+    with pytest.raises(OSError):
+        step.write(made, tmp_path / "no" / "such.step")
+    made.faces[0].loops[0].pop()
+    with pytest.raises(brep.NotAnalytic, match="do not close"):
+        brep._Maker(regions.find(mesh, surface, VOXEL), VOXEL).check(made)
+
+
+def test_cancelled():
+    mesh, surface = cut("flat:d=6,l=20", (10, 20, 5), (10, 20, -4))
+    for wanted in (0.0, 0.3, 0.6):
+        with pytest.raises(swarf.Cancelled):
+            brep.make(mesh, surface, VOXEL, progress=lambda done: done >= wanted)
+    told = []
+    brep.make(mesh, surface, VOXEL, progress=lambda done: told.append(done) and None)
+    assert told == sorted(told) and 0 <= told[0] and told[-1] <= 1
