@@ -289,13 +289,13 @@ def export_analytic(data, stock_file, path, largest=False, progress=None):
     return Analytic(1.0, None, mesh.volume, mesh.area, error, len(made.faces))
 
 
-def export(data, stock_file, path, error_mm=None, budget=0, colour=None, tolerance_mm=0.05, largest=False,
-           progress=None):
+def export(data, stock_file, path, error_mm=None, budget=0, colour=None, tolerance_mm=0.05, allowance_mm=0.0,
+           largest=False, progress=None):
     """Write the mesh of what is left of a JobData's stock, a .vdb file, on the exact surface -> number of triangles.
 
     error_mm: vertices are left out up to this (None: 0.1 voxels); budget: no more triangles, if the error allows;
-    colour: "operation", "deviation" (green within tolerance_mm of the design) or "thickness"; largest: the largest piece
-    alone. progress as simulate(). Any thread.
+    colour: "operation", "deviation" (green within tolerance_mm of the design with allowance_mm left on it) or "thickness";
+    largest: the largest piece alone. progress as simulate(). Any thread.
     JobError where nothing is left, or no mesh is that small; swarf.Error, OSError.
     """
     swarf = load()
@@ -312,6 +312,7 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, toleran
                        % mesh.triangle_count)
     if largest:
         mesh = parts.largest(mesh)
-    tints = colours.make(colour, mesh, surface, job, tolerance_mm, progress=share(0.8, 0.95)) if colour else None
+    tints = colours.make(colour, mesh, surface, job, tolerance_mm, progress=share(0.8, 0.95),
+                         allowance=allowance_mm) if colour else None
     mesh.write(path, colors=tints, progress=share(0.95, 1))
     return mesh.triangle_count

@@ -147,6 +147,14 @@ class TestModel(unittest.TestCase):
             with open(self.path("part.ply"), "rb") as file:
                 found.append(file.read())
         self.assertNotEqual(*found)
+        floor = []  # 0.1 mm is left there: too much, or what is meant to be left
+        for allowance in (0.0, 0.1):
+            model.export(self.obj, self.path("part.obj"), colour="deviation", tolerance_mm=0.02, allowance_mm=allowance)
+            with open(self.path("part.obj"), encoding="ascii") as file:
+                corners = [tuple(map(float, line.split()[1:])) for line in file if line.startswith("v ")]
+            floor.append([corner[3:] for corner in corners if abs(corner[2] + 1.9) < 1e-3])
+        red = [[colour for colour in colours if colour[0] > 3 * colour[1]] for colours in floor]
+        self.assertTrue(red[0] and floor[1] and not red[1], floor)  # and all others are now 0.1 mm short
 
     def test_a_solid_of_the_result_is_a_stock(self):
         solid = model.add_shape(self.obj)
@@ -177,6 +185,19 @@ class TestModel(unittest.TestCase):
         importSVG.export([made], self.path("section.svg"))
         with open(self.path("section.svg"), encoding="utf-8") as file:
             self.assertIn("<path", file.read())
+
+    def test_section_as_dxf(self):
+        import Import
+        import importDXF
+
+        made = model.add_section(self.obj, (0, 0, -1), (0, 0, 1))
+        importDXF.export([made], self.path("section.dxf"))
+        other = samples.new_document(self, "dxf")
+        Import.readDXF(self.path("section.dxf"), other.Name)
+        other.recompute()
+        read = Part.makeCompound([obj.Shape for obj in other.Objects])
+        self.assertAlmostEqual(sum(edge.Length for edge in read.Edges), 4 * 40 + 4 * 7, delta=0.01)
+        self.assertEqual([round(getattr(read.BoundBox, name), 3) for name in ("XMin", "XMax", "YMin", "YMax")], [0, 40, 0, 20])
 
     def test_estimates(self):
         for suffix in (".stl", ".ply", ".glb"):

@@ -46,6 +46,14 @@ class ExportPanel(TaskPanel):
             if kind != "deviation" or obj.HasDesign:
                 self.colour.addItem(text, kind)
         layout.addRow(translate("Swarf", "Colours"), self.colour)
+        self.allowance = QtWidgets.QDoubleSpinBox()
+        self.allowance.setDecimals(3)
+        self.allowance.setRange(0, settings.ALLOWANCE_MAX_MM)
+        self.allowance.setSingleStep(0.05)
+        self.allowance.setSuffix(" mm")
+        self.allowance.setToolTip(translate("Swarf", "What is meant to be left on the model: it counts as no deviation"))
+        self.allowance.setValue(settings.allowance())
+        layout.addRow(translate("Swarf", "Allowance"), self.allowance)
         self.largest = QtWidgets.QCheckBox(translate("Swarf", "leave loose pieces out"))
         layout.addRow(self.largest)
         self.estimate = QtWidgets.QLabel()
@@ -67,6 +75,7 @@ class ExportPanel(TaskPanel):
         self.error.setEnabled(mesh)
         self.largest.setEnabled(mesh)
         self.colour.setEnabled(self.suffix in model.MESH_SUFFIXES and self.suffix != ".stl")
+        self.allowance.setEnabled(self.chosen_colour == "deviation")
         triangles, size = model.estimate(self.obj, self.suffix, self.error.value(), self.chosen_colour is not None)
         if mesh:
             text = translate("Swarf", "about {0:,} triangles, {1:.2f} MB").format(triangles, size / 1e6)
@@ -92,12 +101,14 @@ class ExportPanel(TaskPanel):
 
     def start(self, path):
         """Read the job here, between the events, then mesh and write in a thread."""
+        settings.set_allowance(self.allowance.value())
         self.message.setText("")
         self.bar.setRange(0, 1000)
         self.bar.show()
         self.reading = Slices(
             model.export_steps(self.obj, path, error_mm=self.error.value(), colour=self.chosen_colour,
-                               tolerance_mm=settings.tolerance(), largest=self.largest.isChecked()),
+                               tolerance_mm=settings.tolerance(),
+                               allowance_mm=self.allowance.value(), largest=self.largest.isChecked()),
             self.on_read, self.form)
 
     def on_read(self, made, error):

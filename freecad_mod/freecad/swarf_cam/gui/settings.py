@@ -16,6 +16,9 @@ TOLERANCE_MM, TOLERANCE_MIN_MM, TOLERANCE_MAX_MM = 0.05, 0.001, 10.0
 # How near holders may come to the stock before it is a warning, mm.
 CLEARANCE_MAX_MM = 100.0
 
+# What is meant to be left on the model, mm.
+ALLOWANCE_MAX_MM = 100.0
+
 BOOLEANS = {"AutoPlay": True, "AutoCheck": True, "StopAtError": False, "ShowCutter": True, "ShowPath": False,
             "ShowOrigin": False, "Perspective": False, "Occlusion": True, "Shadow": False}
 
@@ -63,6 +66,16 @@ def tolerance():
 def set_tolerance(value):
     """Keep it."""
     _group().SetFloat("Tolerance", value)
+
+
+def allowance():
+    """What is meant to be left on the model, mm."""
+    return min(max(_group().GetFloat("Allowance", 0.0), 0.0), ALLOWANCE_MAX_MM)
+
+
+def set_allowance(value):
+    """Keep it."""
+    _group().SetFloat("Allowance", value)
 
 
 def clearance():

@@ -167,6 +167,10 @@
             <translation>Alle Arten</translation>
         </message>
         <message>
+            <source>Allowance</source>
+            <translation>Aufmaß</translation>
+        </message>
+        <message>
             <source>Area of the surface by its deviation</source>
             <translation>Fläche nach ihrer Abweichung</translation>
         </message>
@@ -851,6 +855,10 @@
         <message>
             <source>What holds the stock: nothing may touch it</source>
             <translation>Was das Rohteil hält: nichts darf es berühren</translation>
+        </message>
+        <message>
+            <source>What is meant to be left on the model: it counts as no deviation</source>
+            <translation>Was auf dem Modell stehen bleiben soll: es zählt nicht als Abweichung</translation>
         </message>
         <message>
             <source>What the colours of the stock show</source>
