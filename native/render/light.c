@@ -173,24 +173,37 @@ static swarf_status shadow_row(void *context, size_t row)
     return SWARF_OK;
 }
 
+static swarf_status find_sky(swarf_canvas *c, const swarf_progress *progress, double from, double to)
+{
+    sky_work work = {c, (c->width + BLOCK - 1) / BLOCK, (c->height + BLOCK - 1) / BLOCK, NULL, {{{0}}}};
+    make_patterns(work.pattern);
+    c->sky = malloc((size_t)c->width * (size_t)c->height * sizeof *c->sky);
+    work.open = malloc((size_t)work.across * (size_t)work.down * sizeof *work.open);
+    swarf_status status = c->sky && work.open ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
+    if (status == SWARF_OK) status = swarf_parallel_for((size_t)work.down, look_up_row, &work, progress, from, to);
+    if (status == SWARF_OK) status = swarf_parallel_for((size_t)c->height, spread_row, &work, NULL, 0, 1);
+    free(work.open);
+    if (status == SWARF_OK) return SWARF_OK;
+    free(c->sky);
+    c->sky = NULL;
+    return status;
+}
+
+static swarf_status find_sun(swarf_canvas *c, const swarf_progress *progress, double from, double to)
+{
+    c->sun = malloc((size_t)c->width * (size_t)c->height);
+    if (!c->sun) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
+    const swarf_status status = swarf_parallel_for((size_t)c->height, shadow_row, c, progress, from, to);
+    if (status == SWARF_OK) return SWARF_OK;
+    free(c->sun);
+    c->sun = NULL;
+    return status;
+}
+
 swarf_status swarf_canvas_light(swarf_canvas *c, const swarf_progress *progress, double from, double to)
 {
-    const size_t squares = (size_t)c->width * (size_t)c->height;
     const double middle = c->options->occlusion ? from + 0.7 * (to - from) : from;
-    if (c->options->occlusion) {
-        sky_work work = {c, (c->width + BLOCK - 1) / BLOCK, (c->height + BLOCK - 1) / BLOCK, NULL, {{{0}}}};
-        make_patterns(work.pattern);
-        c->sky = malloc(squares * sizeof *c->sky);
-        work.open = malloc((size_t)work.across * (size_t)work.down * sizeof *work.open);
-        swarf_status status = c->sky && work.open ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
-        if (status == SWARF_OK)
-            status = swarf_parallel_for((size_t)work.down, look_up_row, &work, progress, from, middle);
-        if (status == SWARF_OK) status = swarf_parallel_for((size_t)c->height, spread_row, &work, NULL, 0, 1);
-        free(work.open);
-        SWARF_TRY(status);
-    }
-    if (!c->options->shadow) return SWARF_OK;
-    c->sun = malloc(squares);
-    if (!c->sun) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
-    return swarf_parallel_for((size_t)c->height, shadow_row, c, progress, middle, to);
+    if (c->options->occlusion && !c->sky) SWARF_TRY(find_sky(c, progress, from, middle));
+    if (c->options->shadow && !c->sun) SWARF_TRY(find_sun(c, progress, middle, to));
+    return SWARF_OK;
 }

@@ -16,8 +16,6 @@ typedef struct swarf_sight {
     int32_t seen;    /**< swarf_seen */
 } swarf_sight;
 
-enum { SWARF_SECTIONS_MAX = 6 };
-
 /** One view of a scene. */
 typedef struct swarf_look {
     const swarf_scene *scene;

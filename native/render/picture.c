@@ -91,32 +91,54 @@ static swarf_status look_tile(void *context, size_t index)
 }
 
 /** Where the middle of square `index` lies. */
-static void place_of_middle(const void *context, size_t index, double place[2])
+static int place_of_middle(const void *context, size_t index, double place[2])
 {
     const swarf_canvas *c = context;
     place[0] = swarf_canvas_x(c, (int32_t)(index % (size_t)c->width), 0.5);
     place[1] = swarf_canvas_y(c, (int32_t)(index / (size_t)c->width), 0.5);
+    return 1;
 }
 
 /** Where the only ray of a pick goes. */
-static void place_of_pick(const void *context, size_t index, double place[2])
+static int place_of_pick(const void *context, size_t index, double place[2])
 {
     (void)index;
     memcpy(place, context, 2 * sizeof *place);
+    return 1;
 }
 
 /** The parts of the progress by what they cost. */
-static const double looked = 0.2, refined = 0.35, lit = 0.6;
+static const double looked = 0.2, refined = 0.35, lighting = 0.4;
 
-static swarf_status draw(swarf_canvas *c, const swarf_progress *progress)
+/** Find what there is to see of each square. */
+static swarf_status find_middles(swarf_canvas *c, const swarf_progress *progress)
 {
     const size_t count = (size_t)tiles(c->width) * (size_t)tiles(c->height);
     SWARF_TRY(swarf_parallel_for(count, look_tile, c, progress, 0, c->middle ? looked : 1));
+    if (!c->middle || !c->options->exact) return SWARF_OK;
+    return swarf_look_refine(&c->look, c->middle, (size_t)c->width * (size_t)c->height, place_of_middle, c, progress,
+                             looked, refined);
+}
+
+/** Light of the middles, that which is recalled and the rest that the options ask for. */
+static swarf_status find_light(swarf_canvas *c, swarf_recall *recall, const swarf_progress *progress, double from,
+                               double to)
+{
+    if (c->options->occlusion) c->sky = recall->sky;
+    if (c->options->shadow) c->sun = recall->sun;
+    const swarf_status status = swarf_canvas_light(c, progress, from, to);
+    if (c->sky) recall->sky = c->sky;
+    if (c->sun) recall->sun = c->sun;
+    return status;
+}
+
+/** All that follows once the middles are known, which took the part `from` of the work. */
+static swarf_status draw(swarf_canvas *c, swarf_recall *recall, const swarf_progress *progress, double from)
+{
     if (!c->middle) return SWARF_OK;
-    if (c->options->exact)
-        SWARF_TRY(swarf_look_refine(&c->look, c->middle, (size_t)c->width * (size_t)c->height, place_of_middle, c,
-                                    progress, looked, refined));
-    SWARF_TRY(swarf_canvas_light(c, progress, refined, lit));
+    const int is_lit = (!c->options->occlusion || recall->sky) && (!c->options->shadow || recall->sun);
+    const double lit = is_lit ? from : from + lighting * (1 - from);
+    SWARF_TRY(find_light(c, recall, progress, from, lit));
     SWARF_TRY(swarf_canvas_shade(c, progress, lit, 1));
     return swarf_canvas_lines(c);
 }
@@ -282,15 +304,24 @@ static swarf_status render(swarf_scene *scene, const swarf_camera *camera, swarf
     const size_t squares = (size_t)c->width * (size_t)c->height;
     const size_t middles = is_plain(scene, &c->shading, out) ? 0 : squares;
     void *scratch = swarf_scene_scratch(scene, squares * sizeof *c->colour + middles * sizeof *c->middle);
+    swarf_recall *const recall = swarf_scene_recall(scene);
+    swarf_outlook outlook;
+    swarf_outlook_make(camera, options, c->coarse, &outlook);
+    const int is_new = !middles || !swarf_recall_has(recall, &outlook);
     c->colour = scratch;
     c->middle = middles ? (swarf_sight *)(void *)(c->colour + squares) : NULL;
     if (!scratch)
         return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for %d x %d pixels", (int)options->width,
                           (int)options->height);
-    SWARF_TRY(draw(c, progress));
+    if (is_new) {
+        swarf_recall_forget(recall);
+        SWARF_TRY(find_middles(c, progress));
+        if (middles) swarf_recall_keep(recall, &outlook);
+    }
+    SWARF_TRY(draw(c, recall, progress, is_new ? refined : 0));
     output o = {c, out};
     SWARF_TRY(swarf_parallel_for((size_t)options->height, put_row, &o, NULL, 0, 1));
-    swarf_scene_note_ray_ms(scene, (now_ms() - started) / (double)squares);
+    if (is_new) swarf_scene_note_ray_ms(scene, (now_ms() - started) / (double)squares);
     return SWARF_OK;
 }
 
@@ -305,8 +336,6 @@ swarf_status swarf_scene_render(swarf_scene *scene, const swarf_camera *camera, 
     const swarf_status status = render(scene, camera, &c, progress, out);
     swarf_scene_leave(scene);
     swarf_look_end(&c.look);
-    free(c.sky);
-    free(c.sun);
     free(c.edge);
     free(c.outline);
     free(c.room);

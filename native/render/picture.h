@@ -4,7 +4,7 @@
  *   middle   one sight per grid square (a pixel, or coarse * coarse of them), rows from the top; NULL in a plain
  *            picture, which has no use for them once they are shaded
  *   colour   of the squares, linear, premultiplied
- *   sky      how much of the sky is open, per square; NULL: all of it
+ *   sky      how much of the sky is open, per square; NULL: all of it; the recall's, as is the next
  *   sun      255 where the light reaches, per square; NULL: everywhere
  *   edge     how much of an edge the middle of a square is on, 0 .. 255; NULL: edges are not drawn
  *   outline  the same of outlines
@@ -49,7 +49,7 @@ static inline size_t swarf_canvas_at(const swarf_canvas *c, int32_t x, int32_t y
     return (size_t)y * (size_t)c->width + (size_t)x;
 }
 
-/** Fill `sky` and `sun` as the options ask. */
+/** Make `sky` and `sun` where the options ask for them and they are not there. */
 swarf_status swarf_canvas_light(swarf_canvas *canvas, const swarf_progress *progress, double from, double to);
 
 /** Shade the middles into `colour`, and sample what is rough: edges, lines along them, silhouettes. */

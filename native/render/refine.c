@@ -93,8 +93,7 @@ swarf_status swarf_look_refine(const swarf_look *look, swarf_sight *sights, size
         for (b.count = 0; index < count && b.count < room; index++) {
             if (sights[index].seen != SWARF_SEEN_STOCK) continue;
             double at[2];
-            place(context, index, at);
-            take(look, &sights[index], at, index, &b);
+            if (place(context, index, at)) take(look, &sights[index], at, index, &b);
         }
         if (b.count) status = refine(look, &b, sights);
         if (status == SWARF_OK)

@@ -5,8 +5,8 @@
 
 #include "render/look.h"
 
-/** Place (-1 .. 1) in the picture of the ray of sight `index`. */
-typedef void (*swarf_place_fn)(const void *context, size_t index, double place[2]);
+/** Place (-1 .. 1) in the picture of the ray of sight `index`; 0: it is on the exact surface already. */
+typedef int (*swarf_place_fn)(const void *context, size_t index, double place[2]);
 
 /** Move those of `count` sights that see the stock along their rays onto the scene's exact surface, where it has one;
  *  nothing without. All cores; not from within a piece of parallel work. */

@@ -174,42 +174,43 @@ static swarf_status list_row(void *context, size_t row)
 /* Rough squares that one piece of work samples: some 0.1 ms. */
 enum { PIECE = 64 };
 
+/** Where sample `index` of the strip lies. That in the middle of its square has been seen before. */
+static int place_of_sample(const void *context, size_t index, double place[2])
+{
+    const strip *s = context;
+    const swarf_canvas *c = s->canvas;
+    const int32_t n = c->options->samples, sub = (int32_t)(index % (size_t)(n * n)), row = sub / n;
+    const size_t square = s->rough[index / (size_t)(n * n)];
+    place[0] = swarf_canvas_x(c, (int32_t)(square % (size_t)c->width), (sub % n + 0.5) / n);
+    place[1] = swarf_canvas_y(c, (int32_t)(square / (size_t)c->width), (row + 0.5) / n);
+    return 2 * sub + 1 != n * n;
+}
+
+/** Send the rays of some squares, one after the other in full packets. */
 static swarf_status sample_some(void *context, size_t index)
 {
     const strip *s = context;
-    const swarf_canvas *c = s->canvas;
-    const int32_t n = c->options->samples;
-    const size_t end = (index + 1) * PIECE < s->rough_count ? (index + 1) * PIECE : s->rough_count;
-    for (size_t number = index * PIECE; number < end;) {
+    const size_t each = (size_t)s->canvas->options->samples * (size_t)s->canvas->options->samples;
+    const size_t last = (index + 1) * PIECE < s->rough_count ? (index + 1) * PIECE : s->rough_count;
+    for (size_t sample = index * PIECE * each; sample < last * each;) {
         swarf_places places[SWARF_GROUP] = {{.count = 0}};
         swarf_sight *out[SWARF_GROUP];
         int count = 0;
-        for (; count < SWARF_GROUP && number < end; count++, number++) {
-            const int32_t x = (int32_t)(s->rough[number] % (size_t)c->width);
-            const int32_t y = (int32_t)(s->rough[number] / (size_t)c->width);
-            for (int32_t sub = 0; sub < n * n; sub++) {
-                const int32_t row = sub / n;
-                places[count].x[sub] = swarf_canvas_x(c, x, (sub % n + 0.5) / n);
-                places[count].y[sub] = swarf_canvas_y(c, y, (row + 0.5) / n);
+        for (; count < SWARF_GROUP && sample < last * each; count++) {
+            swarf_places *const own = &places[count];
+            out[count] = s->sample + sample;
+            for (; own->count < SWARF_PACKET && sample < last * each; own->count++, sample++) {
+                double place[2];
+                (void)place_of_sample(s, sample, place);
+                own->x[own->count] = place[0];
+                own->y[own->count] = place[1];
             }
-            places[count].count = (unsigned)(n * n);
-            out[count] = s->sample + number * (size_t)(n * n);
         }
-        swarf_look_through(&c->look, places, count, out);
+        swarf_look_through(&s->canvas->look, places, count, out);
     }
+    for (size_t number = index * PIECE; each % 2 && number < last; number++)
+        s->sample[number * each + each / 2] = s->canvas->middle[s->rough[number]];
     return SWARF_OK;
-}
-
-/** Where sample `index` of the strip lies. */
-static void place_of_sample(const void *context, size_t index, double place[2])
-{
-    const strip *s = context;
-    const swarf_canvas *c = s->canvas;
-    const int32_t n = c->options->samples, sub = (int32_t)(index % (size_t)(n * n));
-    const size_t square = s->rough[index / (size_t)(n * n)];
-    place[0] = swarf_canvas_x(c, (int32_t)(square % (size_t)c->width), (sub % n + 0.5) / n);
-    const int32_t row = sub / n;
-    place[1] = swarf_canvas_y(c, (int32_t)(square / (size_t)c->width), (row + 0.5) / n);
 }
 
 /** The sight of sample (i, j), counted over the whole strip; NULL beyond it. */

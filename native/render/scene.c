@@ -33,6 +33,7 @@ struct swarf_scene {
     swarf_ray_space space;
     void *scratch;
     size_t scratch_size;
+    swarf_recall recall;
     double ray_ms; /* that a ray of the last picture took, with all that belongs to it; 0: no picture yet */
     swarf_cube_tiles tiles;
 };
@@ -156,6 +157,7 @@ static swarf_status refresh(swarf_scene *scene)
 {
     const uint32_t generation = swarf_stock_generation(scene->stock);
     if (scene->seen == generation) return SWARF_OK;
+    swarf_recall_forget(&scene->recall);
     scene->cube_count = 0; /* until all is in place: a failure leaves a scene of nothing, and all of it stale */
     SWARF_TRY(lay_out(scene));
     const swarf_status status =
@@ -196,6 +198,7 @@ void swarf_scene_destroy(swarf_scene *scene)
     swarf_fixtures_destroy(scene->fixtures);
     swarf_surface_release(scene->surface);
     free_grid(scene);
+    swarf_recall_forget(&scene->recall);
     free(scene->scratch);
     free(scene);
 }
@@ -216,11 +219,17 @@ void swarf_scene_leave(swarf_scene *scene)
 void *swarf_scene_scratch(swarf_scene *scene, size_t bytes)
 {
     if (bytes > scene->scratch_size || bytes < scene->scratch_size / 4) {
+        swarf_recall_forget(&scene->recall);
         free(scene->scratch);
         scene->scratch = malloc(bytes);
         scene->scratch_size = scene->scratch ? bytes : 0;
     }
     return scene->scratch;
+}
+
+swarf_recall *swarf_scene_recall(swarf_scene *scene)
+{
+    return &scene->recall;
 }
 
 void swarf_scene_box(const swarf_scene *scene, swarf_box *out)
@@ -240,6 +249,7 @@ swarf_status swarf_scene_set_fixtures(swarf_scene *scene, const swarf_triangles 
     size_t filled = 0;
     for (size_t i = 0; i < count; i++) filled += triangles[i].triangle_count > 0;
     if (filled) SWARF_TRY(swarf_fixtures_create(triangles, count, &fixtures));
+    swarf_recall_forget(&scene->recall);
     swarf_fixtures_destroy(scene->fixtures);
     scene->fixtures = fixtures;
     return SWARF_OK;
@@ -248,6 +258,7 @@ swarf_status swarf_scene_set_fixtures(swarf_scene *scene, const swarf_triangles 
 swarf_status swarf_scene_set_surface(swarf_scene *scene, swarf_surface *surface, size_t moves)
 {
     SWARF_REQUIRE(scene, "scene: missing");
+    if (surface != scene->surface || moves != scene->surface_moves) swarf_recall_forget(&scene->recall);
     if (surface) (void)swarf_surface_retain(surface);
     swarf_surface_release(scene->surface);
     scene->surface = surface;

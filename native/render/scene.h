@@ -4,6 +4,7 @@
 #define SWARF_RENDER_SCENE_H
 
 #include "render/ray_kernel.h"
+#include "render/recall.h"
 #include "swarf/render.h"
 
 /** First hits of `count` <= SWARF_GROUP packets. Rays that start in material meet nothing and have their bits in
@@ -18,6 +19,9 @@ void swarf_scene_leave(swarf_scene *scene);
 /** Memory for the picture in the making: kept from picture to picture, for fresh pages cost as much as rays. NULL when
  *  it is not there. */
 void *swarf_scene_scratch(swarf_scene *scene, size_t bytes);
+
+/** What the middles in that memory are of; forgotten when the memory, the stock or what stands on it changes. */
+swarf_recall *swarf_scene_recall(swarf_scene *scene);
 
 /** Box of the surface in mm, empty when there is none. */
 void swarf_scene_box(const swarf_scene *scene, swarf_box *out);

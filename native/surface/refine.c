@@ -57,11 +57,17 @@ static int find_zero(const swarf_surface_near *near, const double p[3], const do
         if (fabs(*s) > reach) break;
     }
     enum { SAMPLES = 8 };
+    swarf_surface_evaluate(near, p, found);
+    int is_in[2] = {found->value < 0, found->value < 0}; /* the last sample back, and forth */
     for (int i = 1; i <= SAMPLES; i++)
         for (int side = -1; side <= 1; side += 2) {
             double a[3], b[3], t;
-            along(p, d, side * reach * (i - 1) / SAMPLES, a);
             along(p, d, side * reach * i / SAMPLES, b);
+            swarf_surface_evaluate(near, b, found);
+            const int was_in = is_in[side > 0];
+            is_in[side > 0] = found->value < 0;
+            if (is_in[side > 0] == was_in) continue;
+            along(p, d, side * reach * (i - 1) / SAMPLES, a);
             if (!swarf_surface_crossing(near, a, b, on_surface * reach, &t, found)) continue;
             *s = side * reach * (i - 1 + t) / SAMPLES;
             return 1;

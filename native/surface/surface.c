@@ -60,8 +60,12 @@ void swarf_surface_first(const swarf_surface *surface, const double point[3], sw
                 n[k] = above > below ? away : -away;
             }
         }
-        out->value = most > 0 ? sqrt(square) : most;
-        if (most <= 0) n[out->piece / 2] = out->piece & 1 ? 1 : -1;
+        if (most <= 0) {
+            out->value = most;
+            n[out->piece / 2] = out->piece & 1 ? 1 : -1;
+            return;
+        }
+        out->value = sqrt(square);
     }
     const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     for (int k = 0; k < 3; k++) n[k] = length > 0 ? n[k] / length : k == 2;

@@ -54,6 +54,7 @@ static void check_face(swarf_scene *scene, const swarf_box *box)
     for (int threads = 1; threads <= 8; threads += threads == 3 ? 5 : 1) {
         CHECK_OK(swarf_threads_set(threads));
         memset(again, 1, bytes);
+        CHECK_OK(swarf_scene_set_fixtures(scene, NULL, 0)); /* forgets what it has seen */
         CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, again));
         CHECK(memcmp(rgba, again, bytes) == 0);
     }
@@ -213,7 +214,7 @@ static void check_progress(swarf_scene *scene, const swarf_box *box)
     CHECK_OK(swarf_progress_interval_set(0));
     CHECK_OK(swarf_threads_set(1));
     CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 1, box, 1.25, &camera));
-    for (options.samples = 1; options.samples <= 3; options.samples += 2) {
+    for (options.samples = 1; options.samples <= 3; options.samples += 2) { /* the second: half is known */
         struct reports reports = {0};
         const swarf_progress progress = {note_report, &reports};
         CHECK_OK(swarf_scene_picture(scene, &camera, &options, &progress, rgba));
@@ -222,6 +223,80 @@ static void check_progress(swarf_scene *scene, const swarf_box *box)
     }
     CHECK_OK(swarf_progress_interval_set(25));
     CHECK_OK(swarf_threads_set(0));
+}
+
+/** What the middles meet is kept from picture to picture while only the shading changes: as if it were not. Whatever
+ *  changes what is met changes the picture, and to the same as that of a scene that knows of nothing. */
+static void check_recall(swarf_stock *stock, swarf_scene *scene, const swarf_box *box)
+{
+    enum { WIDTH = 160, HEIGHT = 120, BYTES = 4 * WIDTH * HEIGHT };
+    static uint8_t last[BYTES], rgba[BYTES], fresh[BYTES];
+    static const float corners[9] = {45, 0, 0, 45, 30, 0, 45, 30, 30};
+    const uint32_t three[3] = {0, 1, 2};
+    const swarf_triangles fixture = {corners, 3, three, 1};
+    const swarf_cut_plane planes[2] = {{{20, 15, 10}, {1, 0, 0}}, {{20, 15, 10}, {0, -1, 0}}};
+    swarf_cutter *cutter = NULL, *other = NULL;
+    swarf_picture_options options = swarf_picture_options_default();
+    swarf_camera camera;
+    CHECK_OK(swarf_cutter_parse("flat:d=6,l=18", &cutter));
+    CHECK_OK(swarf_cutter_parse("ball:d=8,l=18", &other));
+    options.width = WIDTH;
+    options.height = HEIGHT;
+    options.samples = 1;
+    options.occlusion = 0;
+    CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 1, box, 4.0 / 3, &camera));
+    for (int step = 0; step < 17; step++) {
+        const swarf_box hole = {{10, 10, 10}, {25, 20, 25}};
+        swarf_stock *tool = NULL;
+        switch (step) {
+        case 1: options.samples = 3; break;
+        case 2: options.occlusion = 1; break;
+        case 3: options.shadow = 1; break;
+        case 4: options.samples = 2; break; /* all of its light is known */
+        case 5: options.colour[0] = 0.9f; break;
+        case 6: camera.eye[0] += 3; break;
+        case 7:
+            options.section = planes;
+            options.section_count = 1;
+            break;
+        case 8: options.section_count = 2; break;
+        case 9:
+            options.section = planes + 1;
+            options.section_count = 1;
+            break;
+        case 10:
+            options.cutter = cutter;
+            options.cutter_tip[2] = 21;
+            break;
+        case 11: options.cutter_tip[0] = 5; break;
+        case 12: options.cutter = other; break;
+        case 13: options.coarse = 2; break;
+        case 14: options.width -= 8; break;
+        case 15: CHECK_OK(swarf_scene_set_fixtures(scene, &fixture, 1)); break;
+        case 16: {
+            swarf_stock_options voxels = swarf_stock_options_default();
+            voxels.voxel_mm = swarf_stock_voxel(stock);
+            CHECK_OK(swarf_stock_create_box(&hole, &voxels, &tool));
+            CHECK_OK(swarf_stock_boolean(stock, tool, SWARF_DIFFERENCE));
+            swarf_stock_destroy(tool);
+            break;
+        }
+        default: break;
+        }
+        swarf_scene *once = NULL;
+        CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, rgba));
+        CHECK_OK(swarf_scene_create(stock, &once));
+        if (step >= 15) CHECK_OK(swarf_scene_set_fixtures(once, &fixture, 1));
+        CHECK_OK(swarf_scene_picture(once, &camera, &options, NULL, fresh));
+        swarf_scene_destroy(once);
+        const size_t bytes = 4 * (size_t)options.width * HEIGHT;
+        if (!CHECK(memcmp(rgba, fresh, bytes) == 0)) printf("    step %d\n", step);
+        if (step && !CHECK(memcmp(rgba, last, bytes) != 0)) printf("    step %d shows nothing\n", step);
+        memcpy(last, rgba, bytes);
+    }
+    CHECK_OK(swarf_scene_set_fixtures(scene, NULL, 0));
+    swarf_cutter_release(cutter);
+    swarf_cutter_release(other);
 }
 
 /** Nothing left: a picture of the background alone. */
@@ -287,6 +362,7 @@ int main(void)
         check_refusals(scene, &box);
         check_cancel(scene, &box, &random);
         check_progress(scene, &box);
+        check_recall(stock, scene, &box);
     }
     swarf_scene_destroy(scene);
     if (stock) check_empty(stock);
