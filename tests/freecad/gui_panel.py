@@ -283,6 +283,7 @@ class Watching(PanelTest):
         assert panel.program.currentIndex().row() == row, "the line that was clicked stays marked"
         assert panel.session.listing.text(row) in panel.view.caption[1]
         assert panel.player.selected == row and self.is_marked((51.07, 12.93, -3)), "the line's faces stand out"
+        assert [obj.Label for obj in Gui.Selection.getSelection()] == ["Wave"], "and its operation in FreeCAD's tree"
         screenshot("panel-line.png")
         panel.tabs.setCurrentWidget(panel.operations)
         pump(0.2)
@@ -290,6 +291,7 @@ class Watching(PanelTest):
         place = panel.operations.visualItemRect(item).center()
         click(panel.operations.viewport(), place.x(), place.y())
         self.settle(float(panel.session.listing.operation_begin[3]))
+        assert [obj.Label for obj in Gui.Selection.getSelection()] == ["Holes"]
         item.setCheckState(0, QtCore.Qt.Unchecked)
         assert not document.getObject("Holes").ViewObject.Visibility
         item.setCheckState(0, QtCore.Qt.Checked)

@@ -139,8 +139,10 @@ class LivePanel(QtWidgets.QDockWidget):
         self.bar.speed_chosen.connect(player.set_speed)
         self.bar.stops_chosen.connect(player.set_stops)
         self.operations.chosen.connect(player.go_to_operation)
+        self.operations.chosen.connect(self.picking.select_operation)
         self.operations.shown.connect(self._show_path_of)
         self.program.chosen.connect(player.go_to_line)
+        self.program.chosen.connect(self.picking.select_line)
         self.accuracy.chosen.connect(lambda voxel: self.opening.reload(voxel))
 
     # For the parts of the panel

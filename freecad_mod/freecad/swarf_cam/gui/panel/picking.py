@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A click on the stock: asks the engine what made the point, and shows the answer in the lists and in FreeCAD's
-tree."""
+tree. A click in a list shows there as well."""
 
 import FreeCAD
 import FreeCADGui as Gui
@@ -48,7 +48,7 @@ class Picking:
         if found.move >= 0:
             panel.program.set_current(found.line)
             panel.operations.set_current(found.operation)
-            self._select_in_tree(panel.session.listing.operations[found.operation].source)
+            self.select_operation(found.operation)
         panel.tabs.setCurrentWidget(panel.inspector)
 
     @staticmethod
@@ -70,8 +70,16 @@ class Picking:
                           time=clocks.text_of(session.clock.time_of(found.move)))
         return values
 
-    def _select_in_tree(self, name):
-        obj = self._panel.document_object(name)
+    def select_line(self, line):
+        """Select the operation of a line in FreeCAD's tree."""
+        if self._panel.session is not None:
+            self.select_operation(self._panel.session.listing.operation[line])
+
+    def select_operation(self, operation):
+        """Select an operation in FreeCAD's tree."""
+        if self._panel.session is None:
+            return
+        obj = self._panel.document_object(self._panel.session.listing.operations[operation].source)
         if obj is not None:
             Gui.Selection.clearSelection()
             Gui.Selection.addSelection(obj)
