@@ -49,13 +49,18 @@ static void add_mark(uint8_t *marks, size_t slot, uint8_t mark)
         __atomic_fetch_or(&marks[slot], mark, __ATOMIC_RELAXED);
 }
 
+static double clamp(double x, double last)
+{
+    return x > last ? last : x > 0 ? x : 0;
+}
+
 void swarf_mark_slots(const swarf_tree_layout *layout, const double at[3], uint8_t mark, uint8_t *marks)
 {
     int32_t lo[3], hi[3];
     for (int k = 0; k < 3; k++) {
         const double last = (double)layout->count[k] * SWARF_NODE_DIM / SWARF_LEAF_DIM - 1;
-        lo[k] = (int32_t)fmin(fmax((at[k] - mark_reach) / SWARF_LEAF_DIM, 0), last);
-        hi[k] = (int32_t)fmin(fmax((at[k] + mark_reach) / SWARF_LEAF_DIM, 0), last);
+        lo[k] = (int32_t)clamp((at[k] - mark_reach) / SWARF_LEAF_DIM, last);
+        hi[k] = (int32_t)clamp((at[k] + mark_reach) / SWARF_LEAF_DIM, last);
     }
     for (int32_t x = lo[0]; x <= hi[0]; x++)
         for (int32_t y = lo[1]; y <= hi[1]; y++)

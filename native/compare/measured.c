@@ -23,8 +23,6 @@ static const double turned_cosine = -0.2;
  * elsewhere: each that lies beyond the stock would be told of. */
 static const double most_points = 2e7, most_points_beyond = 1e5;
 
-enum { PIECE = 1024 };
-
 struct work {
     const swarf_stock *stock;
     const swarf_solid *design;
@@ -51,21 +49,22 @@ static swarf_status measure_piece(void *context, size_t index)
 {
     const struct work *work = context;
     const swarf_points *points = work->points;
-    const size_t end = (index + 1) * PIECE < points->count ? (index + 1) * PIECE : points->count;
-    swarf_solid_hit hit = {.place = SIZE_MAX}; /* points are in the order of leaves: near each other */
+    const size_t first = index * SOLID_BATCH;
+    const size_t count = points->count - first < SOLID_BATCH ? points->count - first : SOLID_BATCH;
+    double point[SOLID_BATCH][3], distance[SOLID_BATCH], at[3];
+    size_t place[SOLID_BATCH];
     swarf_probe probe = {0}, own = swarf_probe_begin(work->stock);
     if (work->first) probe = swarf_probe_begin(work->first);
-    for (size_t i = index * PIECE; i < end; i++) {
-        double point[3], at[3];
-        for (size_t k = 0; k < 3; k++) point[k] = points->xyz[3 * i + k];
-        swarf_solid_find_next(work->design, point, &hit);
-        points->distance[i] = (float)hit.distance;
-        points->triangle[i] = work->design->source[hit.place];
-        if (is_turned(&own, point, &work->design->corners[hit.place])) points->kind[i] |= POINT_TURNED;
+    for (size_t i = 0; i < 3 * count; i++) point[i / 3][i % 3] = points->xyz[3 * first + i];
+    swarf_solid_measure(work->design, (const double(*)[3])point, count, distance, place);
+    for (size_t i = 0; i < count; i++) {
+        points->distance[first + i] = (float)distance[i];
+        points->triangle[first + i] = work->design->source[place[i]];
+        if (is_turned(&own, point[i], &work->design->corners[place[i]])) points->kind[first + i] |= POINT_TURNED;
         if (!work->first) continue;
-        for (int k = 0; k < 3; k++) at[k] = (point[k] - probe.layout->origin[k]) * probe.scale;
+        for (int k = 0; k < 3; k++) at[k] = (point[i][k] - probe.layout->origin[k]) * probe.scale;
         if (fabs((double)swarf_probe_point(&probe, at)) < untouched_error * work->voxel)
-            points->kind[i] |= SWARF_POINT_UNTOUCHED;
+            points->kind[first + i] |= SWARF_POINT_UNTOUCHED;
     }
     return SWARF_OK;
 }
@@ -85,7 +84,8 @@ static swarf_status measure(swarf_measured *m, const swarf_stock *stock, const s
     const double voxel = m->layout.voxel;
     SWARF_TRY(swarf_sample_stock(stock, progress, 0, 0.1, &m->on_stock));
     struct work work = {stock, design, first, &m->on_stock, voxel};
-    SWARF_TRY(swarf_parallel_for((m->on_stock.count + PIECE - 1) / PIECE, measure_piece, &work, progress, 0.1, 0.5));
+    SWARF_TRY(swarf_parallel_for((m->on_stock.count + SOLID_BATCH - 1) / SOLID_BATCH, measure_piece, &work, progress,
+                                 0.1, 0.5));
     const double spacing = fmax(voxel, sqrt(design->facts.area_mm2 / most_design_points(&m->layout, design)));
     /* 9 bytes for 512 voxels */
     m->slots = calloc(swarf_layout_nodes(&m->layout) * SWARF_NODE_SLOTS, sizeof *m->slots);

@@ -125,11 +125,11 @@ static int are_neighbours(const swarf_solid *solid, size_t place, size_t other)
     return across[0] == other || across[1] == other || across[2] == other;
 }
 
-static void test_place(void *context, size_t place)
+static int test_place(void *context, size_t place)
 {
     struct group_work *group = context;
     const swarf_solid *solid = group->work->solid;
-    if (place < group->first) return; /* that one's group sees to it */
+    if (place < group->first) return 1; /* that one's group sees to it */
     float lo[3], hi[3];
     for (int k = 0; k < 3; k++) {
         const float(*p)[3] = solid->corners[place].xyz;
@@ -152,6 +152,7 @@ static void test_place(void *context, size_t place)
                 swarf_array_reserve((void **)&list->pairs, &list->room, list->count + 1, sizeof *list->pairs);
         if (group->status == SWARF_OK) list->pairs[list->count++] = (struct pair){{(uint32_t)other, (uint32_t)place}};
     }
+    return group->status == SWARF_OK;
 }
 
 /* Groups that one piece of work looks at. */
@@ -172,7 +173,7 @@ static swarf_status test_groups(void *context, size_t index)
                 lo[k] = fmin(lo[k], group.lo[i][k]);
                 hi[k] = fmax(hi[k], group.hi[i][k]);
             }
-        swarf_box_tree_near(tree, lo, hi, work->gap, test_place, &group);
+        swarf_box_tree_near(tree, lo, hi, work->gap, 0, test_place, &group);
         SWARF_TRY(group.status);
     }
     return SWARF_OK;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* A cube whose centre is farther from the surface than its corners and the reach is all of one sign. The others are
- * divided. In a leaf the triangles that can be closest to any of its voxels are gathered once; where those within reach
- * lie in one plane, that plane is all there is to it, else the leaf is divided with ever shorter lists. */
+ * divided. In a leaf the triangles within reach are gathered once; where they lie in one plane, that plane is all there
+ * is to it. Else the leaf is divided: when they are few with ever shorter lists of those that can be closest to any of
+ * its voxels, when they are many by looking in the tree. */
 #include "solid/field.h"
 
 #include "base/memory.h"
@@ -19,6 +20,9 @@ static const double least_flat_cosine = 0.999;
 
 /* Triangles from which on the lists of a leaf are divided once more before all of them are tried at every voxel. */
 enum { FEW = 3 };
+
+/* Triangles from which on lists take longer than looking in the tree. */
+enum { MANY = 32 };
 
 /* A half space that a triangle lies in: before an edge, or on either side of its own plane. */
 struct side {
@@ -47,6 +51,7 @@ struct walker {
     size_t count, room;
     const struct cube *cube; /* what is gathered must come this near to it */
     double bound;
+    swarf_nearby nearby;
     swarf_status status;
     float values[FIELD_LEAF_SIZE];
 };
@@ -57,6 +62,14 @@ static struct cube cube_of(const swarf_field *field, const int32_t corner[3], in
     for (int k = 0; k < 3; k++) cube.middle[k] = field->origin[k] + field->voxel * (corner[k] + 0.5 * (edge - 1));
     cube.radius = cube.half * sqrt(3.0);
     return cube;
+}
+
+static void ends_of(const struct cube *cube, double lo[3], double hi[3])
+{
+    for (int k = 0; k < 3; k++) {
+        lo[k] = cube->middle[k] - cube->half;
+        hi[k] = cube->middle[k] + cube->half;
+    }
 }
 
 static double larger(double a, double b)
@@ -91,12 +104,11 @@ static double least_distance(const candidate *c, const struct cube *cube)
     return least;
 }
 
-static void add_candidate(void *context, size_t place)
+static int add_candidate(void *context, size_t place)
 {
     struct walker *w = context;
-    if (w->status != SWARF_OK) return;
     w->status = swarf_array_reserve((void **)&w->list, &w->room, w->count + 1, sizeof *w->list);
-    if (w->status != SWARF_OK) return;
+    if (w->status != SWARF_OK) return 0;
     candidate *c = &w->list[w->count];
     const swarf_corners *t = &w->solid->corners[place];
     c->place = place;
@@ -113,6 +125,7 @@ static void add_candidate(void *context, size_t place)
     }
     set_side(&c->plane, t->xyz[0]);
     if (least_distance(c, w->cube) <= w->bound) w->count++;
+    return 1;
 }
 
 /* The closest of a list to a point. Where the foot on its plane lies in a triangle nothing else need be found out; a
@@ -265,18 +278,36 @@ static void fill_part(struct walker *w, const int32_t corner[3], const int32_t a
             }
 }
 
+/* The same where there are many: no list is all that can be closest. */
+static void search_part(struct walker *w, const int32_t corner[3], const int32_t at[3], int edge)
+{
+    const double reach = w->field->reach;
+    const struct cube cube = cube_of(w->field, corner, edge);
+    swarf_nearest nearest;
+    swarf_nearby_find(&w->nearby, cube.middle, &nearest);
+    const double away = sqrt(nearest.square);
+    if (edge == 1 || away - cube.radius >= reach) {
+        fill_same(w, at, edge, clamp(away * swarf_solid_sign(w->solid, cube.middle, &nearest), reach));
+        return;
+    }
+    const int part = edge / 2;
+    for (int i = 0; i < 8; i++) {
+        const int step[3] = {(i >> 2) * part, (i >> 1 & 1) * part, (i & 1) * part};
+        const int32_t next[3] = {corner[0] + step[0], corner[1] + step[1], corner[2] + step[2]};
+        const int32_t there[3] = {at[0] + step[0], at[1] + step[1], at[2] + step[2]};
+        search_part(w, next, there, part);
+    }
+}
+
 /* Gather what comes within `bound` of a cube. */
 static void gather(struct walker *w, const struct cube *cube, double bound)
 {
     double lo[3], hi[3];
-    for (int k = 0; k < 3; k++) {
-        lo[k] = cube->middle[k] - cube->half;
-        hi[k] = cube->middle[k] + cube->half;
-    }
+    ends_of(cube, lo, hi);
     w->count = 0;
     w->cube = cube;
     w->bound = bound;
-    swarf_box_tree_near(&w->solid->tree, lo, hi, bound, add_candidate, w);
+    swarf_box_tree_near(&w->solid->tree, lo, hi, bound, 0, add_candidate, w);
 }
 
 static void fill_leaf(struct walker *w, const int32_t corner[3], const struct cube *cube, size_t nearest, double away)
@@ -289,6 +320,13 @@ static void fill_leaf(struct walker *w, const int32_t corner[3], const struct cu
     if (w->status == SWARF_OK && number < w->count &&
         is_flat(w, w->list, w->count, cube, &w->list[number], away, &plane)) {
         fill_plane(w, start, FIELD_LEAF, cube, plane);
+        return;
+    }
+    if (w->count > MANY) {
+        double lo[3], hi[3];
+        ends_of(cube, lo, hi);
+        swarf_nearby_enter(&w->nearby, lo, hi);
+        search_part(w, corner, start, FIELD_LEAF);
         return;
     }
     gather(w, cube, (away + cube->radius) * (1 + 1e-9));
@@ -323,6 +361,7 @@ swarf_status swarf_field_walk(const swarf_field *field, const int32_t corner[3],
                               void *context)
 {
     struct walker w = {.field = field, .solid = field->solid, .see = see, .context = context};
+    swarf_nearby_begin(&w.solid->tree, w.solid->corners, &w.nearby);
     const swarf_status status = walk(&w, corner, edge, INFINITY);
     free(w.list);
     return status;

@@ -2,10 +2,9 @@
 /* Walks over a tree: what is closest, what is near, how often it goes round. Boxes are tested eight at a time in float,
  * triangles in double. */
 #include "solid/angle.h"
-#include "solid/tree.h"
+#include "solid/boxes.h"
 
 #include <math.h>
-#include <string.h>
 
 /* A group to be looked at, and from how far away it may hold something. */
 struct visit {
@@ -80,108 +79,28 @@ double swarf_corners_closest(const swarf_corners *triangle, const double point[3
     return best;
 }
 
-/* Four numbers in one register of any processor; wider ones would need variants of their own and win little here. */
-typedef float four __attribute__((vector_size(16)));
-typedef int32_t four_bits __attribute__((vector_size(16)));
-
-enum { HALVES = TREE_WIDTH / 4 };
-
-/* Where positive, else 0. */
-static inline four positive(four x)
-{
-    return (four)((x > 0) & (four_bits)x);
-}
-
-/* Squares of the distances to eight boxes; bit i of the result is set where that of box i is no more than `limit`. */
-static inline unsigned box_squares(const swarf_group *group, const float at[3], float limit, float square[TREE_WIDTH])
-{
-    unsigned near = 0;
-    for (int half = 0; half < HALVES; half++) {
-        four sum = {0, 0, 0, 0};
-        for (int k = 0; k < 3; k++) {
-            four lo, hi;
-            memcpy(&lo, group->lo[k] + 4 * half, sizeof lo);
-            memcpy(&hi, group->hi[k] + 4 * half, sizeof hi);
-            const four away = positive(lo - at[k]) + positive(at[k] - hi); /* one of them is 0 */
-            sum += away * away;
-        }
-        const four_bits own = sum <= limit;
-        memcpy(square + 4 * half, &sum, sizeof sum);
-        for (int i = 0; i < 4; i++) near |= ((unsigned)own[i] & 1) << (4 * half + i);
-    }
-    return near;
-}
-
-/* Squares that differ by less than this share are the same but for rounding. */
-static const double rounding = 1e-12;
-
-/* Whether a box is no closer than what is nearest so far; corners are floats, so that boxes are exact. Of triangles in
- * one plane along the axes, whose boxes overlap as those of slivers do, only the first is measured for it. */
-static int is_no_closer(const swarf_group *group, int i, const double point[3], const swarf_nearest *nearest)
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const double below = group->lo[k][i] - point[k], above = point[k] - group->hi[k][i];
-        const double away = below > above ? below : above;
-        sum += away > 0 ? away * away : 0;
-    }
-    return sum >= nearest->square * (1 - rounding);
-}
-
-/* Greatest square in float that a box within `square` can show. */
-static float square_limit(double square, double slack)
-{
-    const double reach = sqrt(square) + slack;
-    return (float)(reach * reach * (1 + 1e-6));
-}
-
-/* A box that shows this or more may be no closer than `square` after all. */
-static float square_doubtful(double square, double slack)
-{
-    const double reach = sqrt(square) - slack;
-    return reach > 0 ? (float)(reach * reach * (1 - 1e-6)) : 0;
-}
-
 void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *corners, const double point[3],
                             swarf_nearest *nearest)
 {
-    float at[3];
-    double slack = tree->slack;
-    for (int k = 0; k < 3; k++) {
-        at[k] = (float)point[k];
-        const double own = fabs(point[k]) * TREE_SLACK;
-        slack = own > slack ? own : slack;
-    }
-    float limit = square_limit(nearest->square, slack), doubtful = square_doubtful(nearest->square, slack);
+    swarf_aim aim = swarf_aim_at(tree, point, nearest->square);
     struct visit stack[MOST_VISITS];
     int depth = 1;
     stack[0] = (struct visit){0, tree->levels - 1, 0};
     while (depth > 0) {
         const struct visit now = stack[--depth];
-        if (now.square > limit) continue;
-        if (now.square >= doubtful && now.level + 1 < tree->levels) {
+        if (now.square > aim.limit) continue;
+        if (now.square >= aim.doubtful && now.level + 1 < tree->levels) {
             const swarf_group *above = &tree->groups[tree->first[now.level + 1] + now.group / TREE_WIDTH];
-            if (is_no_closer(above, (int)(now.group % TREE_WIDTH), point, nearest)) continue;
+            if (swarf_group_is_no_closer(above, (int)(now.group % TREE_WIDTH), &aim, nearest)) continue;
         }
-        float square[TREE_WIDTH];
-        const swarf_group *group = &tree->groups[tree->first[now.level] + now.group];
-        unsigned near = box_squares(group, at, limit, square);
-        const size_t below = now.level ? tree->first[now.level] - tree->first[now.level - 1] : tree->count;
-        const size_t boxes = below - now.group * TREE_WIDTH;
-        if (boxes < TREE_WIDTH) near &= (1u << boxes) - 1; /* those that are missing are infinitely far away */
         if (now.level == 0) {
-            for (; near; near &= near - 1) {
-                const int i = __builtin_ctz(near);
-                if (square[i] > limit || (square[i] >= doubtful && is_no_closer(group, i, point, nearest))) continue;
-                swarf_nearest here = {.place = now.group * TREE_WIDTH + (size_t)i};
-                here.square = swarf_corners_closest(&corners[here.place], point, here.point, &here.feature);
-                if (!(here.square < nearest->square)) continue;
-                *nearest = here;
-                limit = square_limit(here.square, slack);
-                doubtful = square_doubtful(here.square, slack);
-            }
+            swarf_group_look(tree, corners, now.group, &aim, nearest);
             continue;
         }
+        float square[TREE_WIDTH];
+        unsigned near = swarf_group_squares(&tree->groups[tree->first[now.level] + now.group], &aim, square);
+        const size_t boxes = tree->first[now.level] - tree->first[now.level - 1] - now.group * TREE_WIDTH;
+        if (boxes < TREE_WIDTH) near &= (1u << boxes) - 1;
         /* the nearest last, to be looked into first */
         const int base = depth;
         for (; near; near &= near - 1) {
@@ -194,7 +113,7 @@ void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *cor
 }
 
 void swarf_box_tree_near(const swarf_box_tree *tree, const double lo[3], const double hi[3], double reach,
-                         swarf_place_fn see, void *context)
+                         unsigned level, swarf_box_fn see, void *context)
 {
     float low[3], high[3];
     for (int k = 0; k < 3; k++) {
@@ -215,10 +134,10 @@ void swarf_box_tree_near(const swarf_box_tree *tree, const double lo[3], const d
         for (size_t i = 0; i < TREE_WIDTH; i++) {
             const size_t number = now.group * TREE_WIDTH + i;
             if (!meets[i]) continue; /* nor does a box that is missing */
-            if (now.level == 0)
-                see(context, number);
-            else
+            if (now.level > level)
                 stack[depth++] = (struct visit){0, now.level - 1, number};
+            else if (!see(context, number))
+                return;
         }
     }
 }

@@ -270,32 +270,18 @@ void swarf_solid_nearest(const swarf_solid *solid, const double point[3], double
     swarf_box_tree_nearest(&solid->tree, solid->corners, point, out);
 }
 
-static void take_hit(const swarf_solid *solid, const double point[3], const swarf_nearest *nearest,
-                     swarf_solid_hit *out)
+void swarf_solid_measure(const swarf_solid *solid, const double (*point)[3], size_t count, double *distance,
+                         size_t *place)
 {
-    out->place = nearest->place;
-    if (nearest->place == SIZE_MAX) return;
-    memcpy(out->point, nearest->point, sizeof out->point);
-    out->distance = sqrt(nearest->square) * swarf_solid_sign(solid, point, nearest);
-}
-
-void swarf_solid_find(const swarf_solid *solid, const double point[3], double reach, swarf_solid_hit *out)
-{
-    swarf_nearest nearest;
-    swarf_solid_nearest(solid, point, reach, &nearest);
-    take_hit(solid, point, &nearest, out);
-}
-
-void swarf_solid_find_next(const swarf_solid *solid, const double point[3], swarf_solid_hit *hit)
-{
-    if (hit->place != SIZE_MAX) { /* no other triangle farther away than the last one is worth a look */
-        swarf_nearest nearest = {.place = hit->place};
-        nearest.square = swarf_corners_closest(&solid->corners[hit->place], point, nearest.point, &nearest.feature);
-        swarf_box_tree_nearest(&solid->tree, solid->corners, point, &nearest);
-        take_hit(solid, point, &nearest, hit);
-        return;
+    swarf_nearby nearby;
+    swarf_nearby_begin(&solid->tree, solid->corners, &nearby);
+    for (size_t i = 0, end = 0; i < count; i++) {
+        if (i == end) end += swarf_nearby_enter_points(&nearby, point + i, count - i);
+        swarf_nearest nearest;
+        swarf_nearby_find(&nearby, point[i], &nearest);
+        place[i] = nearest.place;
+        distance[i] = sqrt(nearest.square) * swarf_solid_sign(solid, point[i], &nearest);
     }
-    swarf_solid_find(solid, point, INFINITY, hit);
 }
 
 struct distance_work {
@@ -306,19 +292,14 @@ struct distance_work {
     uint32_t *triangle;
 };
 
-/* Points that one piece of work measures, one after the other. */
-enum { POINTS = 1024 };
-
 static swarf_status measure_points(void *context, size_t index)
 {
     const struct distance_work *work = context;
-    const size_t end = (index + 1) * POINTS < work->count ? (index + 1) * POINTS : work->count;
-    swarf_solid_hit hit = {.place = SIZE_MAX};
-    for (size_t i = index * POINTS; i < end; i++) {
-        swarf_solid_find_next(work->solid, work->points + 3 * i, &hit);
-        work->distance[i] = hit.distance;
-        if (work->triangle) work->triangle[i] = work->solid->source[hit.place];
-    }
+    const size_t first = index * SOLID_BATCH;
+    const size_t count = work->count - first < SOLID_BATCH ? work->count - first : SOLID_BATCH;
+    size_t place[SOLID_BATCH];
+    swarf_solid_measure(work->solid, (const double(*)[3])work->points + first, count, work->distance + first, place);
+    for (size_t i = 0; work->triangle && i < count; i++) work->triangle[first + i] = work->solid->source[place[i]];
     return SWARF_OK;
 }
 
@@ -329,5 +310,5 @@ swarf_status swarf_solid_distance(const swarf_solid *solid, const double *points
     for (size_t i = 0; i < 3 * count; i++)
         SWARF_REQUIRE(isfinite(points[i]), "solid: coordinate %c of point %zu is not finite", "xyz"[i % 3], i / 3);
     struct distance_work work = {solid, points, count, distance, triangle};
-    return swarf_parallel_for((count + POINTS - 1) / POINTS, measure_points, &work, progress, 0, 1);
+    return swarf_parallel_for((count + SOLID_BATCH - 1) / SOLID_BATCH, measure_points, &work, progress, 0, 1);
 }

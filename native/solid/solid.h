@@ -3,7 +3,7 @@
 #ifndef SWARF_SOLID_SOLID_H
 #define SWARF_SOLID_SOLID_H
 
-#include "solid/tree.h"
+#include "solid/nearby.h"
 #include "swarf/solid.h"
 
 #ifdef __cplusplus
@@ -42,19 +42,14 @@ struct swarf_solid {
 swarf_status swarf_solid_make(const swarf_triangles *triangles, double hole_share, const swarf_progress *progress,
                               double from, double to, swarf_solid **out);
 
-/** Where a solid comes closest to a point. */
-typedef struct swarf_solid_hit {
-    double distance; /**< signed */
-    double point[3];
-    size_t place; /**< SIZE_MAX: the triangles are farther away than asked for; then distance means nothing */
-} swarf_solid_hit;
+/** Points that are best measured at a time. */
+enum { SOLID_BATCH = 1024 };
 
-/** Look no farther than `reach` (INFINITY: find the closest point wherever it is). Any thread. */
-void swarf_solid_find(const swarf_solid *solid, const double point[3], double reach, swarf_solid_hit *out);
-/** The closest point wherever it is; *hit holds that of a point nearby (place SIZE_MAX: none is known), which makes it
- *  quick. Where several triangles are as close it may tell of another one. Any thread. */
-void swarf_solid_find_next(const swarf_solid *solid, const double point[3], swarf_solid_hit *hit);
-/** By the winding number: slower than swarf_solid_find(), and needs nothing to be near. Any thread. */
+/** Signed distances of points and the places of their closest triangles: quicker where a point is near the last. Any
+ *  thread. */
+void swarf_solid_measure(const swarf_solid *solid, const double (*point)[3], size_t count, double *distance,
+                         size_t *place);
+/** By the winding number: slower than by the closest triangle, and needs nothing to be near. Any thread. */
 int swarf_solid_inside(const swarf_solid *solid, const double point[3]);
 
 /** The closest point that bounds the solid; place SIZE_MAX when it is farther than `reach`, never with INFINITY. */

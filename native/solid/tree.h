@@ -66,10 +66,11 @@ void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *cor
 /** Closest point of one triangle, its feature, and the square of its distance. */
 double swarf_corners_closest(const swarf_corners *triangle, const double point[3], double closest[3], int *feature);
 
-/** Call `see` for every place whose box comes within `reach` of the box lo .. hi. */
-typedef void (*swarf_place_fn)(void *context, size_t place);
+/** Call `see` with the number of every box of a level of the tree (0: the place of a triangle, 1: a group of level 0,
+ * ...) that comes within `reach` of the box lo .. hi, until it returns 0. */
+typedef int (*swarf_box_fn)(void *context, size_t number);
 void swarf_box_tree_near(const swarf_box_tree *tree, const double lo[3], const double hi[3], double reach,
-                         swarf_place_fn see, void *context);
+                         unsigned level, swarf_box_fn see, void *context);
 
 /** Winding number of the triangles about a point: far groups count by their sums (the first term of G. Barill et al.,
  *  "Fast winding numbers for soups and clouds", 2018), near ones exactly. */

@@ -47,12 +47,18 @@ static inline void swarf_probe_enter(swarf_probe *probe, const int32_t leaf[3])
     probe->everywhere = -layout->background;
 }
 
-/** Value of a voxel of the layout, mm. */
-static inline float swarf_probe_voxel(swarf_probe *probe, const int32_t ijk[3])
+/** Enter the leaf that a voxel of the layout is in. */
+static inline void swarf_probe_come(swarf_probe *probe, const int32_t ijk[3])
 {
     const int32_t leaf[3] = {ijk[0] >> 3, ijk[1] >> 3, ijk[2] >> 3};
     if (leaf[0] != probe->leaf[0] || leaf[1] != probe->leaf[1] || leaf[2] != probe->leaf[2])
         swarf_probe_enter(probe, leaf);
+}
+
+/** Value of a voxel of the layout, mm. */
+static inline float swarf_probe_voxel(swarf_probe *probe, const int32_t ijk[3])
+{
+    swarf_probe_come(probe, ijk);
     return probe->values ? probe->values[(ijk[0] & 7) * 64 + (ijk[1] & 7) * 8 + (ijk[2] & 7)] : probe->everywhere;
 }
 
@@ -63,6 +69,14 @@ static inline void swarf_probe_corners(swarf_probe *probe, const double at[3], f
     for (int k = 0; k < 3; k++) {
         corner[k] = (int32_t)floor(at[k]);
         part[k] = (float)(at[k] - corner[k]);
+    }
+    if ((corner[0] & 7) < 7 && (corner[1] & 7) < 7 && (corner[2] & 7) < 7) { /* mostly: all in one leaf */
+        swarf_probe_come(probe, corner);
+        const float *first =
+            probe->values ? probe->values + (corner[0] & 7) * 64 + (corner[1] & 7) * 8 + (corner[2] & 7) : NULL;
+        for (int i = 0; i < 8; i++)
+            value[i] = first ? first[(i >> 2) * 64 + (i >> 1 & 1) * 8 + (i & 1)] : probe->everywhere;
+        return;
     }
     for (int i = 0; i < 8; i++) {
         const int32_t ijk[3] = {corner[0] + (i >> 2), corner[1] + (i >> 1 & 1), corner[2] + (i & 1)};
@@ -85,18 +99,21 @@ static inline float swarf_probe_slope(swarf_probe *probe, const double at[3], do
 {
     float part[3], value[8];
     swarf_probe_corners(probe, at, part, value);
-    double sum = 0;
-    slope[0] = slope[1] = slope[2] = 0;
-    for (int i = 0; i < 8; i++) {
-        const int high[3] = {i >> 2, i >> 1 & 1, i & 1};
-        double share[3];
-        for (int k = 0; k < 3; k++) share[k] = high[k] ? (double)part[k] : 1 - (double)part[k];
-        sum += share[0] * share[1] * share[2] * (double)value[i];
-        for (int k = 0; k < 3; k++)
-            slope[k] +=
-                (high[k] ? probe->scale : -probe->scale) * share[(k + 1) % 3] * share[(k + 2) % 3] * (double)value[i];
+    const double x = (double)part[0], y = (double)part[1], z = (double)part[2];
+    double face[4], rise[4], line[2], bend[2], grow[2]; /* in the plane of x, along it in y and z */
+    for (int i = 0; i < 4; i++) {
+        rise[i] = (double)value[i + 4] - (double)value[i];
+        face[i] = (double)value[i] + x * rise[i];
     }
-    return (float)sum;
+    for (int i = 0; i < 2; i++) {
+        bend[i] = face[i + 2] - face[i];
+        line[i] = face[i] + y * bend[i];
+        grow[i] = rise[i] + y * (rise[i + 2] - rise[i]);
+    }
+    slope[0] = probe->scale * (grow[0] + z * (grow[1] - grow[0]));
+    slope[1] = probe->scale * (bend[0] + z * (bend[1] - bend[0]));
+    slope[2] = probe->scale * (line[1] - line[0]);
+    return (float)(line[0] + z * (line[1] - line[0]));
 }
 
 #endif

@@ -158,6 +158,19 @@ static void random_point(const compound *c, const swarf_box *box, test_random *r
         out[k] = p[0][k] + a * (p[1][k] - p[0][k]) + b * (p[2][k] - p[0][k]) + test_random_in(random, -spread, spread);
 }
 
+/* Half of the points come in walks of small steps: looks near each other keep what they saw. */
+static void random_points(const compound *c, const swarf_box *box, test_random *random, size_t count, double *out)
+{
+    enum { WALK = 32 };
+    for (size_t i = 0; i < count; i++) {
+        if (i % (2 * WALK) == 0 || i % (2 * WALK) >= WALK) {
+            random_point(c, box, random, out + 3 * i);
+            continue;
+        }
+        for (size_t k = 0; k < 3; k++) out[3 * i + k] = out[3 * (i - 1) + k] + test_random_in(random, -0.2, 0.2);
+    }
+}
+
 static void check(compound *c, test_random *random)
 {
     const size_t count = test_size() == TEST_FULL ? 1000000 : 20000;
@@ -168,7 +181,7 @@ static void check(compound *c, test_random *random)
     double *points = malloc(3 * count * sizeof *points), *distance = malloc(count * sizeof *distance);
     uint32_t *nearest = malloc(count * sizeof *nearest);
     if (!points || !distance || !nearest) exit(2);
-    for (size_t i = 0; i < count; i++) random_point(c, &facts.box, random, points + 3 * i);
+    random_points(c, &facts.box, random, count, points);
     size_t wrong_signs = 0, wrong_distances = 0, told = 0;
     if (CHECK_OK(swarf_solid_distance(solid, points, count, NULL, distance, nearest)))
         for (size_t i = 0; i < count; i++) {
