@@ -271,6 +271,7 @@ class Watching(PanelTest):
         assert panel.program.currentIndex().row() == line and panel.player.selected == line
         wait_for(lambda: self.is_marked((60, 10, -1)), "the line's faces to stand out")
         assert not self.is_marked((25, 25, -5))
+        self.settle()
         screenshot("panel-point.png")
         panel.tabs.setCurrentWidget(panel.program)
         pump(0.2)

@@ -170,6 +170,59 @@ def test_the_exact_surface_knows_its_moves():
         scene.set_moves(3)
 
 
+# Linear colours of 0, 1/4 ... 1: from blue over green to red, dark enough to be shaded.
+RAMP = ((0.05, 0.12, 0.62), (0.02, 0.45, 0.60), (0.10, 0.55, 0.16), (0.80, 0.62, 0.06), (0.70, 0.08, 0.03))
+
+
+def ramp(part):
+    place = 4 * part
+    low = min(int(place), 3)
+    return [a + (place - low) * (b - a) for a, b in zip(RAMP[low], RAMP[low + 1])]
+
+
+def shown_from_above(base):
+    """sRGB of a level face below an open sky: Gooch's formula for the light from (-0.36, 0.76, 0.46) of the camera."""
+    warmth = 0.5 + 0.5 * 0.46 / math.sqrt(0.36 ** 2 + 0.76 ** 2 + 0.46 ** 2)
+    rgb = []
+    for channel, value in enumerate(base):
+        warm = 0.86 * value + (0.10 if channel < 2 else 0)
+        cool = (0.22 if channel < 2 else 0.36) * value
+        rgb.append(255 * (1.055 * (warmth * warm + (1 - warmth) * cool) ** (1 / 2.4) - 0.055))
+    return rgb
+
+
+def test_colours_of_age_and_feed():
+    first = swarf.Stock.box((0, 0, -10), (60, 50, 0), 0.5)
+    stock = first.copy()
+    feeds = (300, 100, 500, 200, 400)
+    program = swarf.Program(start=(10, 5, 5))
+    program.add_operation("slots")
+    program.set_section(tool=1)
+    for number, feed in enumerate(feeds):
+        y = 5 + 10 * number
+        program.add_line((10, y, 5), kind="rapid")
+        program.add_line((10, y, -4), feed_mm_min=feed)
+        program.add_line((50, y, -4), feed_mm_min=feed)
+        program.add_line((50, y, 5), kind="rapid")
+    tools = {1: swarf.Cutter("flat:d=6,l=20")}
+    stock.simulate(program, tools)
+    scene = swarf.Scene(stock)
+    scene.set_surface(first, program, tools)
+    camera = swarf.Camera((30, 25, 90), (30, 25, 0), (0, 1, 0), height=60)
+    parts = {"age": [(4 * number + 2) / 20 for number in range(5)], "feed": [(feed - 100) / 400 for feed in feeds]}
+    for colouring, expected in parts.items():
+        picture = scene.render(camera, 60, 60, samples=1, edges=False, occlusion=False, colouring=colouring,
+                               program=program, moves_done=20, buffers=("rgba", "move"))
+        for number, part in enumerate(expected):
+            row = 30 - (5 + 10 * number - 25)
+            assert picture.move[row, 30] == 4 * number + 2
+            seen = [picture.rgba[row * 60 + 30, channel] for channel in range(3)]
+            assert seen == pytest.approx(shown_from_above(ramp(part)), abs=1.5), (colouring, number)
+        assert picture.move[25, 30] == -1
+        top = [picture.rgba[25 * 60 + 30, channel] for channel in range(3)]
+        assert top == pytest.approx(shown_from_above((0.63, 0.62, 0.62)), abs=1.5)
+
+
 def block(lo, hi):
     """A Mesh of a box."""
     corners = [(x, y, z) for x in (lo[0], hi[0]) for y in (lo[1], hi[1]) for z in (lo[2], hi[2])]

@@ -64,6 +64,33 @@ static swarf_scene *make_scene(swarf_stock **stock)
     return scene;
 }
 
+/** A point within a voxel of an edge that can be seen from above: the block's or the slot's. */
+static void aim_at_edge(test_random *random, double out[3])
+{
+    const double angle = test_random_in(random, 0, 2 * 3.14159265358979), end = cos(angle) > 0 ? 30 : 10;
+    for (int axis = 0; axis < 3; axis++) out[axis] = test_random_in(random, block.lo[axis], block.hi[axis]);
+    switch (test_random_below(random, 4)) {
+    case 0: /* straight, at the top or the floor */
+        out[0] = test_random_in(random, 10, 30);
+        out[1] = test_random_below(random, 2) ? 10 : 20;
+        out[2] = test_random_below(random, 2) ? 12 : 20;
+        break;
+    case 1: /* round */
+        out[0] = end + 5 * cos(angle);
+        out[1] = 15 + 5 * sin(angle);
+        out[2] = test_random_below(random, 2) ? 12 : 20;
+        break;
+    case 2: /* round the top */
+        out[0] = test_random_below(random, 2) ? block.lo[0] : block.hi[0];
+        out[2] = block.hi[2];
+        break;
+    default: /* upright */
+        out[0] = test_random_below(random, 2) ? block.lo[0] : block.hi[0];
+        out[1] = test_random_below(random, 2) ? block.lo[1] : block.hi[1];
+    }
+    for (int axis = 0; axis < 3; axis++) out[axis] += test_random_in(random, -voxel, voxel);
+}
+
 int main(void)
 {
     test_random random = test_random_begin(53);
@@ -78,14 +105,23 @@ int main(void)
             camera.eye[i] =
                 camera.target[i] + (i < 2 ? test_random_in(&random, -60, 60) : test_random_in(&random, 30, 90));
         }
+        if (trial & 2) aim_at_edge(&random, camera.target);
         swarf_pick pick;
         if (!CHECK_OK(swarf_scene_pick(scene, &camera, &options, 0, 0, &pick))) break;
         if (pick.seen != SWARF_SEEN_STOCK) continue;
-        double normal[3], cosine = 0;
+        double normal[3], cosine = 0, slope = 0, length = 0;
         int cut;
         const double value = value_at(pick.point, normal, &cut);
         seen++;
         if (fabs(value) > 1e-3 * voxel) {
+            /* The field rounds an edge off by a third of a voxel. Along a ray that grazes a face beside one, the face
+             * itself then lies farther than a hit is ever moved: the hit stays in the material, that near to it. */
+            for (int i = 0; i < 3; i++) {
+                const double way = camera.target[i] - camera.eye[i];
+                slope += way * pick.normal[i];
+                length += way * way;
+            }
+            CHECK(value < 0 && value > -voxel / 3 && fabs(slope) < 0.1 * sqrt(length));
             off++;
             continue;
         }
@@ -94,10 +130,8 @@ int main(void)
         wrong += pick.move != (cut ? 0 : -1);
     }
     CHECK(seen > 15000);
-    /* Rays past an edge by less than the field cuts off it keep the field's hit. */
     CHECK(off <= seen / 1000);
-    CHECK(turned <= seen / 1000);
-    CHECK(wrong <= seen / 1000);
+    CHECK(turned == 0 && wrong == 0);
     swarf_scene_destroy(scene);
     swarf_stock_destroy(stock);
     return test_end();

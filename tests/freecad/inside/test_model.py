@@ -195,7 +195,8 @@ class TestModel(unittest.TestCase):
         other = samples.new_document(self, "dxf")
         Import.readDXF(self.path("section.dxf"), other.Name)
         other.recompute()
-        read = Part.makeCompound([obj.Shape for obj in other.Objects])
+        # FreeCAD 1.0 puts layers beside the lines
+        read = Part.makeCompound([obj.Shape for obj in other.Objects if hasattr(obj, "Shape")])
         self.assertAlmostEqual(sum(edge.Length for edge in read.Edges), 4 * 40 + 4 * 7, delta=0.01)
         self.assertEqual([round(getattr(read.BoundBox, name), 3) for name in ("XMin", "XMax", "YMin", "YMax")], [0, 40, 0, 20])
 
