@@ -3,8 +3,8 @@
  *
  *   level 0: leaves; node i of level l + 1 is over nodes 2 i and 2 i + 1 of level l.
  *
- * Every leaf looks for later ones whose boxes meet its own, and each pair of their facets whose boxes meet is decided
- * in whole numbers. */
+ * The tree is gone through against itself, a part of it by each thread: pairs of nodes whose boxes meet, the first not
+ * after the second. Of two leaves each pair of facets whose boxes meet is decided in whole numbers. */
 #include "mesh/intersect.h"
 
 #include "base/memory.h"
@@ -16,7 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAF = 4, LEVELS = 32, CHUNK = 1024 };
+/* Facets of a leaf; of the nodes that are one thread's part the level; facets that are prepared together. */
+enum { LEAF = 4, LEVELS = 32, PART = 8, CHUNK = 4096 };
 
 typedef struct extent {
     int32_t lo[3], hi[3];
@@ -27,15 +28,20 @@ typedef struct found {
     size_t count, room;
 } found;
 
+typedef struct key {
+    uint64_t code;
+    uint32_t facet;
+} key;
+
 typedef struct tree {
     const swarf_facets *facets;
     double step;
-    uint32_t *order;
+    key *keys;   /* the facets in order */
     extent *own; /* of the facets in that order */
     size_t level_first[LEVELS], level_count[LEVELS];
     int levels;
     extent *boxes;
-    found *chunks;
+    found *parts;
 } tree;
 
 double swarf_facets_step(double most)
@@ -102,11 +108,6 @@ static uint64_t spread(uint64_t x)
     return (x | x << 2) & 0x1249249249249249;
 }
 
-typedef struct key {
-    uint64_t code;
-    uint32_t facet;
-} key;
-
 /* By 16 bits at a time, stable. */
 static swarf_status sort_keys(key **keys, size_t count)
 {
@@ -132,28 +133,18 @@ static swarf_status sort_keys(key **keys, size_t count)
     return SWARF_OK;
 }
 
-static swarf_status sort_facets(tree *t)
+static swarf_status make_keys(void *context, size_t index)
 {
-    const size_t count = t->facets->facet_count;
-    key *keys = malloc((count + 1) * sizeof *keys);
-    t->order = malloc((count + 1) * sizeof *t->order);
-    if (!keys || !t->order) {
-        free(keys);
-        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
-    }
-    for (size_t f = 0; f < count; f++) {
+    const tree *t = context;
+    for (size_t f = index * CHUNK; f < (index + 1) * CHUNK && f < t->facets->facet_count; f++) {
         int32_t p[3][3];
         corners_of(t, (uint32_t)f, p);
         const extent e = extent_of(p);
-        keys[f].code = 0;
+        t->keys[f] = (key){.facet = (uint32_t)f};
         for (int c = 0; c < 3; c++) /* coordinates lie in -2^24 .. 2^24 */
-            keys[f].code |= spread((uint64_t)(((int64_t)e.lo[c] + e.hi[c]) / 2 + (1 << 24)) >> 4) << c;
-        keys[f].facet = (uint32_t)f;
+            t->keys[f].code |= spread((uint64_t)(((int64_t)e.lo[c] + e.hi[c]) / 2 + (1 << 24)) >> 4) << c;
     }
-    const swarf_status status = sort_keys(&keys, count);
-    for (size_t f = 0; f < count; f++) t->order[f] = keys[f].facet;
-    free(keys);
-    return status;
+    return SWARF_OK;
 }
 
 static void widen(extent *to, const extent *by)
@@ -164,9 +155,29 @@ static void widen(extent *to, const extent *by)
     }
 }
 
+/* The boxes of facets and leaves. */
+static swarf_status make_leaves(void *context, size_t index)
+{
+    const tree *t = context;
+    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < t->facets->facet_count; i++) {
+        int32_t p[3][3];
+        corners_of(t, t->keys[i].facet, p);
+        t->own[i] = extent_of(p);
+        if (i % LEAF == 0)
+            t->boxes[i / LEAF] = t->own[i];
+        else
+            widen(&t->boxes[i / LEAF], &t->own[i]);
+    }
+    return SWARF_OK;
+}
+
 static swarf_status build(tree *t)
 {
-    const size_t count = t->facets->facet_count;
+    const size_t count = t->facets->facet_count, chunks = (count + CHUNK - 1) / CHUNK;
+    t->keys = malloc((count + 1) * sizeof *t->keys);
+    if (!t->keys) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
+    SWARF_TRY(swarf_parallel_for(chunks, make_keys, t, NULL, 0, 1));
+    SWARF_TRY(sort_keys(&t->keys, count));
     size_t total = 0;
     for (size_t nodes = (count + LEAF - 1) / LEAF;; nodes = (nodes + 1) / 2) {
         t->level_first[t->levels] = total;
@@ -178,15 +189,7 @@ static swarf_status build(tree *t)
     t->own = malloc((count + 1) * sizeof *t->own);
     if (!t->boxes || !t->own)
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
-    for (size_t i = 0; i < count; i++) {
-        int32_t p[3][3];
-        corners_of(t, t->order[i], p);
-        t->own[i] = extent_of(p);
-        if (i % LEAF == 0)
-            t->boxes[i / LEAF] = t->own[i];
-        else
-            widen(&t->boxes[i / LEAF], &t->own[i]);
-    }
+    SWARF_TRY(swarf_parallel_for(chunks, make_leaves, t, NULL, 0, 1));
     for (int level = 1; level < t->levels; level++)
         for (size_t i = 0; i < t->level_count[level]; i++) {
             const size_t child = t->level_first[level - 1] + 2 * i;
@@ -201,8 +204,9 @@ static swarf_status look_at_leaf(const tree *t, size_t own, size_t leaf, found *
 {
     const size_t count = t->facets->facet_count;
     for (size_t i = own * LEAF; i < (own + 1) * LEAF && i < count; i++) {
-        const uint32_t f = t->order[i];
+        const uint32_t f = t->keys[i].facet;
         int32_t p[3][3];
+        if (own != leaf && apart(&t->own[i], &t->boxes[leaf])) continue;
         corners_of(t, f, p);
         if (own == leaf && !swarf_triangle_has_area(p)) {
             SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
@@ -211,7 +215,7 @@ static swarf_status look_at_leaf(const tree *t, size_t own, size_t leaf, found *
         for (size_t k = own == leaf ? i + 1 : leaf * LEAF; k < (leaf + 1) * LEAF && k < count; k++) {
             if (apart(&t->own[i], &t->own[k])) continue;
             int32_t q[3][3];
-            const uint32_t g = t->order[k];
+            const uint32_t g = t->keys[k].facet;
             corners_of(t, g, q);
             if (!swarf_triangles_meet(p, t->facets->facet[f].v, q, t->facets->facet[g].v)) continue;
             SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
@@ -221,58 +225,62 @@ static swarf_status look_at_leaf(const tree *t, size_t own, size_t leaf, found *
     return SWARF_OK;
 }
 
-static swarf_status look_for(const tree *t, size_t own, found *out)
+typedef struct node {
+    int level;
+    size_t index;
+} node;
+
+static const extent *box_of(const tree *t, node n)
 {
-    const extent *box = &t->boxes[own];
-    struct {
-        size_t node;
-        int level;
-    } stack[2 * LEVELS];
-    int depth = 0;
-    stack[depth].node = 0;
-    stack[depth++].level = t->levels - 1;
-    while (depth) {
-        depth--;
-        const int level = stack[depth].level;
-        const size_t node = stack[depth].node;
-        if (((node + 1) << level) <= own || apart(box, &t->boxes[t->level_first[level] + node])) continue;
-        if (level == 0) {
-            SWARF_TRY(look_at_leaf(t, own, node, out));
-            continue;
-        }
-        for (size_t child = 2 * node + 2; child-- > 2 * node;)
-            if (child < t->level_count[level - 1]) {
-                stack[depth].node = child;
-                stack[depth++].level = level - 1;
-            }
-    }
-    return SWARF_OK;
+    return &t->boxes[t->level_first[n.level] + n.index];
 }
 
-static swarf_status look_chunk(void *context, size_t index)
+/* The leaves under node `index` of level PART, against all that do not come before them. */
+static swarf_status look_for(void *context, size_t index)
 {
     const tree *t = context;
-    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < t->level_count[0]; i++)
-        SWARF_TRY(look_for(t, i, &t->chunks[index]));
+    found *out = &t->parts[index];
+    struct {
+        node a, b;
+    } stack[4 * LEVELS];
+    int depth = 0;
+    stack[depth].a = (node){t->levels - 1 < PART ? t->levels - 1 : PART, index};
+    stack[depth++].b = (node){t->levels - 1, 0};
+    while (depth) {
+        depth--;
+        const node a = stack[depth].a, b = stack[depth].b;
+        if ((b.index + 1) << b.level <= a.index << a.level || apart(box_of(t, a), box_of(t, b))) continue;
+        if (a.level == 0 && b.level == 0) {
+            SWARF_TRY(look_at_leaf(t, a.index, b.index, out));
+            continue;
+        }
+        const int first = a.level >= b.level;
+        const node parted = first ? a : b;
+        for (size_t i = 2 * parted.index; i < 2 * parted.index + 2 && i < t->level_count[parted.level - 1]; i++) {
+            const node child = {parted.level - 1, i};
+            stack[depth].a = first ? child : a;
+            stack[depth++].b = first ? b : child;
+        }
+    }
     return SWARF_OK;
 }
 
 static swarf_status look_everywhere(tree *t, const swarf_progress *progress, double from, double to,
                                     swarf_facet_pair **pairs, size_t *count)
 {
-    const size_t chunks = (t->level_count[0] + CHUNK - 1) / CHUNK;
-    t->chunks = calloc(chunks, sizeof *t->chunks);
-    if (!t->chunks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
-    swarf_status status = swarf_parallel_for(chunks, look_chunk, t, progress, from, to);
+    const size_t parts = t->level_count[t->levels - 1 < PART ? t->levels - 1 : PART];
+    t->parts = calloc(parts, sizeof *t->parts);
+    if (!t->parts) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    swarf_status status = swarf_parallel_for(parts, look_for, t, progress, from, to);
     size_t total = 0, used = 0;
-    for (size_t i = 0; i < chunks; i++) total += t->chunks[i].count;
+    for (size_t i = 0; i < parts; i++) total += t->parts[i].count;
     swarf_facet_pair *all = malloc((total + 1) * sizeof *all);
     if (status == SWARF_OK && !all) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
-    for (size_t i = 0; i < chunks; i++) {
-        if (status == SWARF_OK && t->chunks[i].count)
-            memcpy(all + used, t->chunks[i].pairs, t->chunks[i].count * sizeof *all);
-        used += t->chunks[i].count;
-        free(t->chunks[i].pairs);
+    for (size_t i = 0; i < parts; i++) {
+        if (status == SWARF_OK && t->parts[i].count)
+            memcpy(all + used, t->parts[i].pairs, t->parts[i].count * sizeof *all);
+        used += t->parts[i].count;
+        free(t->parts[i].pairs);
     }
     if (status != SWARF_OK) {
         free(all);
@@ -292,12 +300,11 @@ swarf_status swarf_facets_intersect(const swarf_facets *facets, const swarf_prog
         return SWARF_OK;
     }
     tree t = {.facets = facets, .step = step_of(facets)};
-    swarf_status status = sort_facets(&t);
-    if (status == SWARF_OK) status = build(&t);
+    swarf_status status = build(&t);
     if (status == SWARF_OK) status = look_everywhere(&t, progress, from, to, pairs, count);
-    free(t.order);
+    free(t.keys);
     free(t.boxes);
     free(t.own);
-    free(t.chunks);
+    free(t.parts);
     return status;
 }
