@@ -163,8 +163,8 @@ static int look_round(simplify_region *r, uint32_t v, ring *out)
         out->facet[i] = facet[at];
         out->vertex[i] = from[at];
         out->error = most_of(out->error, (double)r->facet[facet[at]].error_mm);
-        int follow = 0;
-        while (follow < count && from[follow] != to[at]) follow++;
+        int follow = count;
+        for (int k = 0; k < count; k++) follow = from[k] == to[at] ? k : follow; /* without jumps */
         if (follow == count || (i < count - 1 && follow == 0)) return 0;
         at = follow;
         if (i == count - 1 && at != 0) return 0;
@@ -197,8 +197,8 @@ static int keeps_topology(const simplify_region *r, const ring *around, int j, u
 
 /* Squared greatest distance between the edges to v that go and the edges to u = ring vertex j that come, where they
  * pass each other: with v's own distance it is that between the old facets and the new. On an edge of the surface its
- * two sides do not mix. */
-static double between_edges(const ring *around, int j)
+ * two sides do not mix. Not looked for further where it is more than `enough`. */
+static double between_edges(const ring *around, int j, double enough)
 {
     const int n = around->count;
     double most = 0;
@@ -208,7 +208,7 @@ static double between_edges(const ring *around, int j)
         if (around->crease[j] && around->crease[i]) side++;
         side_of[i] = around->crease[i] && around->crease[j] ? -1 : side;
     }
-    for (int k = 0; k < n; k++) {
+    for (int k = 0; k < n && most <= enough; k++) {
         /* cppcheck-suppress uninitvar ; all but that of j are set */
         if (k == j || k == (j + 1) % n || k == (j + n - 1) % n || side_of[k] < 0) continue;
         for (int i = 0; i < n; i++)
@@ -218,9 +218,11 @@ static double between_edges(const ring *around, int j)
 }
 
 /* Of several choices the best has the best worst facet, and little error. */
+static const double score_error = 0.95;
+
 static double score_of(double shape, double error, double limit)
 {
-    return sqrt(shape) * (1 - 0.95 * error / limit);
+    return sqrt(shape) * (1 - score_error * error / limit);
 }
 
 /* How far the middle lies from the new facet that comes to lie over it when it is drawn onto ring vertex j; 0 when it
@@ -297,7 +299,10 @@ static int try_draw(ring *around, int j, double limit, double least, double *err
             if (around->crease[i] && i != j) nearest = most_of(nearest, to_segment(around, i, j));
     *error = around->error + sqrt(nearest);
     if (*error > limit || score_of(shape, *error, limit) <= least) return 0;
-    *error = around->error + sqrt(most_of(nearest, between_edges(around, j)));
+    /* beyond this error the score is not above `least` either */
+    const double last = least > 0 ? least_of(limit, limit * (1 - least / sqrt(shape)) / score_error) : limit;
+    const double enough = (last - around->error) * (last - around->error);
+    *error = around->error + sqrt(most_of(nearest, between_edges(around, j, enough)));
     *score = score_of(shape, *error, limit);
     return *error <= limit && *score > least;
 }
