@@ -76,6 +76,12 @@ static void make_line(swarf_trace *trace, const double a[3], const double b[3])
         trace->slope = trace->rise / run;
     }
     trace->kind = trace->slope > 0 ? TRACE_TILTED : TRACE_LEVEL;
+    trace->cosine = 1 / sqrt(1 + trace->slope * trace->slope);
+    trace->length = sqrt(trace->run * trace->run + trace->rise * trace->rise);
+    if (trace->kind == TRACE_LEVEL) return;
+    trace->along[0] = trace->ux * trace->run / trace->length;
+    trace->along[1] = trace->uy * trace->run / trace->length;
+    trace->along[2] = trace->rise / trace->length;
 }
 
 static void make_arc(swarf_trace *trace, const swarf_path *path, double share, double parts)
@@ -268,7 +274,7 @@ static void touch_arc(const swarf_trace *trace, const double p[3], swarf_touch *
 static void touch_cylinder(const swarf_trace *trace, const double p[3], double R, double bottom, double top,
                            int32_t piece, swarf_touch *best)
 {
-    const double m = trace->slope, im = 1 / sqrt(1 + m * m);
+    const double m = trace->slope, im = trace->cosine;
     const double ex = p[0] - trace->point[0], ey = p[1] - trace->point[1], z = p[2] - trace->point[2];
     const double s = ex * trace->ux + ey * trace->uy, w = ey * trace->ux - ex * trace->uy;
     const double along = clamp(s, 0, trace->run), beyond = s - along, rho = sqrt(beyond * beyond + w * w);
@@ -327,8 +333,7 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
 static void touch_ball(const swarf_trace *trace, const double p[3], swarf_touch *best)
 {
     const swarf_exact_piece *ball = trace->body->exact;
-    const double R = ball->radius, length = sqrt(trace->run * trace->run + trace->rise * trace->rise);
-    const double d[3] = {trace->ux * trace->run / length, trace->uy * trace->run / length, trace->rise / length};
+    const double R = ball->radius, length = trace->length, *d = trace->along;
     double e[3] = {p[0] - trace->point[0], p[1] - trace->point[1], p[2] - trace->point[2] - ball->centre_z};
     const double q = clamp(e[0] * d[0] + e[1] * d[1] + e[2] * d[2], 0, length);
     for (int k = 0; k < 3; k++) e[k] -= q * d[k];
