@@ -12,6 +12,7 @@ typedef struct scene_object {
     PyObject *stock;
     swarf_surface *surface;  /* NULL: none */
     program_object *program; /* of the surface: closed while that lives */
+    PyObject *shown;         /* the Surface that it is of; NULL: of none */
 } scene_object;
 
 static PyObject *scene_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
@@ -37,6 +38,7 @@ static void drop_surface(scene_object *scene)
     swarf_surface_release(scene->surface);
     if (scene->program) scene->program->exports--;
     Py_XDECREF((PyObject *)scene->program);
+    Py_CLEAR(scene->shown);
     scene->surface = NULL;
     scene->program = NULL;
 }
@@ -117,6 +119,31 @@ static PyObject *scene_set_surface(PyObject *self, PyObject *args, PyObject *key
     drop_surface(scene);
     scene->surface = surface;
     scene->program = held;
+    Py_RETURN_NONE;
+}
+
+static PyObject *scene_show_surface(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"surface", "moves", NULL};
+    module_state *state = state_of(self);
+    scene_object *scene = (scene_object *)self;
+    PyObject *object, *moves_object = Py_None;
+    size_t from, moves;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|O:show_surface", names, state->surface, &object,
+                                     &moves_object))
+        return NULL;
+    const surface_object *surface = (surface_object *)object;
+    if (program_range(surface->program, 0, moves_object, &from, &moves)) return NULL;
+    native_call call;
+    call_begin(&call, NULL);
+    const swarf_status status = swarf_scene_set_surface(scene->handle, surface->handle, moves);
+    if (call_end(&call, state, status)) return NULL;
+    Py_INCREF(object);
+    drop_surface(scene);
+    scene->surface = swarf_surface_retain(surface->handle);
+    scene->program = (program_object *)Py_NewRef((PyObject *)surface->program);
+    scene->program->exports++;
+    scene->shown = object; /* keeps the programs of set-ups before as they are */
     Py_RETURN_NONE;
 }
 
@@ -368,6 +395,9 @@ static PyMethodDef scene_methods[] = {
      "set_surface($self, first, program, tools, moves=None, *, progress=None)\n--\n\n"
      "Show the exact surface that the first moves (None: all) of a program make of the stock `first`, which the\n"
      "scene's stock must have seen: sharp edges, true normals, and the moves that made them."},
+    {"show_surface", WITH_KEYWORDS(scene_show_surface), METH_VARARGS | METH_KEYWORDS,
+     "show_surface($self, surface, moves=None)\n--\n\n"
+     "Show a Surface after the first moves (None: all) of its program, as set_surface() does."},
     {"set_moves", scene_set_moves, METH_O,
      "set_moves($self, count, /)\n--\n\nHow many moves of the surface stand now; None: all."},
     {"set_fixtures", scene_set_fixtures, METH_O,

@@ -474,6 +474,8 @@ class Scene:
     ) -> None:
         """Show the exact surface that the first moves (None: all) of a program make of the stock ``first``, which the
         scene's stock must have seen: sharp edges, true normals, and the moves that made them."""
+    def show_surface(self, surface: Surface, moves: Optional[int] = None) -> None:
+        """Show a Surface after the first moves (None: all) of its program, as set_surface() does."""
     def set_moves(self, count: Optional[int], /) -> None:
         """How many moves of the surface stand now; None: all."""
     def set_fixtures(self, meshes: Sequence[Mesh], /) -> None:

@@ -42,7 +42,7 @@ class Result:
     contour: Optional[Contour] = None  #: what making the mesh came to, or streaming it; of all pieces
     seconds: dict[str, float] = field(default_factory=dict)
     before: list[tuple[Job, Simulation]] = field(default_factory=list)  #: of the set-ups before, the first one first
-    surface: Optional[Surface] = None  #: exact, where a mesh was made
+    surface: Optional[Surface] = None  #: exact, where a mesh or a picture was made
     loose: loose.LoosePieces = field(default_factory=loose.LoosePieces)  #: what hangs on nothing any more
     dropped_mm3: float = 0.0  #: of it, where it was left out
     resampled_voxels: float = 0.0  #: how far the first stock's voxels may be off for being turned; 0: they are as they were
@@ -103,22 +103,17 @@ def simulate(
     started = time.perf_counter()
     first = timed("stock", lambda report: make_first(job.stock, voxel=voxel, resolution=resolution, progress=report))
     stock = first.stock
-    scene = uncut = None
-    if picture is not None:  # before the cut: the exact surface begins with the stock as it was
-        scene = Scene(stock)
-        timed("stock", lambda report: scene.set_surface(stock, job.program, job.tools, progress=report))
-        uncut = stock.copy() if drop_loose else None
-    exact = None
-    if mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs):
+    meshed, exact = mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs), None
+    if meshed or picture is not None:  # before the cut: the exact surface begins with the stock as it was
         exact = timed("stock", lambda report: first.surface(job.program, job.tools, progress=report))
     simulation = timed("cut", lambda report: stock.simulate(job.program, job.tools, batch=batch, progress=report))
     result = Result(job, stock, simulation, seconds=seconds, before=first.played, surface=exact,
                     resampled_voxels=first.resampled_voxels)
     result.loose = timed("loose", lambda report: loose.find(
         job, stock, lambda part: make_stock(job.stock, voxel=stock.voxel, progress=part), report))
-    streamed = exact is not None and not (mesh or drop_loose or colour) and streams(
+    streamed = meshed and not (mesh or drop_loose or colour) and streams(
         [path for path in outputs if output_suffix(path) in MESH_SUFFIXES])
-    if exact is not None and not streamed:
+    if meshed and not streamed:
         result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
                                                                    progress=report))
         result.contour = result.mesh.contour
@@ -127,9 +122,6 @@ def simulate(
         result.stock = stock = timed("mesh", lambda report: Stock.from_mesh(largest(whole), stock.voxel, progress=report))
         result.mesh = None if result.mesh is None else largest(whole)
         result.dropped_mm3 = simulation.volume_final - stock.volume()
-        if scene is not None:
-            scene = Scene(stock)
-            timed("mesh", lambda report: scene.set_surface(uncut, job.program, job.tools, progress=report))
     if compare and job.design is not None:
         result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
     tints = None
@@ -146,7 +138,8 @@ def simulate(
             timed("write", lambda report: stock.write(path, progress=report))
     if picture is not None:
         width, height = picture_size
-        camera = Camera.view(view, stock.bounding_box(), width / height)
+        camera, scene = Camera.view(view, stock.bounding_box(), width / height), Scene(stock)
+        scene.show_surface(exact)
         timed("picture", lambda report: scene.render(camera, width, height, progress=report).write(picture))
     seconds["total"] = time.perf_counter() - started
     return result

@@ -170,6 +170,34 @@ def test_the_exact_surface_knows_its_moves():
         scene.set_moves(3)
 
 
+def test_the_exact_surface_of_the_set_up_before():
+    """A slot of the set-up before has sharp edges in the next one, whose voxels round them."""
+    first = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
+    program, after = swarf.Program(start=(-10, 20, -4)), swarf.Program(start=(-10, 20, 5))
+    for moves, end in ((program, (70, 20, -4)), (after, (-10, 20, 6))):
+        moves.add_operation("slot")
+        moves.set_section(tool=1)
+        moves.add_line(end, feed_mm_min=100)
+    tools = {1: swarf.Cutter("flat:d=10,l=20")}
+    stay = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
+    surface = swarf.Surface(first, program, tools).next(stay, after, tools)
+    first.simulate(program, tools)
+    scene = swarf.Scene(first)
+    with pytest.raises(ValueError, match="2 moves|moves"):
+        scene.show_surface(surface, 2)
+    scene.show_surface(surface)
+    del surface
+    camera = swarf.Camera((30, 20, 50), (30, 20, 0), (0, 1, 0), height=60)
+    for y, depth in ((25 - 1e-3, -4), (25 + 1e-3, 0)):
+        edge = camera.project((30, y, 0))
+        assert scene.pick(camera, edge[0], edge[1]).point[2] == pytest.approx(depth, abs=1e-6)
+    for changed in (program, after):
+        with pytest.raises(BufferError):
+            changed.add_line((0, 0, 0))
+    del scene
+    after.add_line((0, 0, 5))
+
+
 # Linear colours of 0, 1/4 ... 1: from blue over green to red, dark enough to be shaded.
 RAMP = ((0.05, 0.12, 0.62), (0.02, 0.45, 0.60), (0.10, 0.55, 0.16), (0.80, 0.62, 0.06), (0.70, 0.08, 0.03))
 
