@@ -63,6 +63,46 @@ def test_a_gouge_names_its_line():
     assert math.isclose(found.cluster.volume, 0.2 * (60 + 9 * math.pi), rel_tol=0.05)
 
 
+def three_operations():
+    """Rough leaves 0.2 but plunges 0.3 too deep once (line 12); finish leaves a strip 0.1 too high (line 103); engrave,
+    which the design knows nothing of, goes 0.2 too deep (line 201)."""
+    program = swarf.Program(start=(-10, -10, 5))
+    for name, first, depth in (("rough", 1, 0.8), ("finish", 101, 1.0)):
+        program.set_section(tool=1, spindle="cw", spindle_rpm=8000, operation=program.add_operation(name))
+        for row, y in enumerate(range(0, 31, 5)):  # 6 mm wide, so that no row does the work of the next
+            down = 0.9 if (name, y) == ("finish", 10) else depth
+            program.add_line((-5, y, 5), line=first + row, kind="rapid")
+            program.add_line((-5, y, -down), feed_mm_min=200, line=first + row)
+            program.add_line((45, y, -down), feed_mm_min=400, line=first + row)
+            program.add_line((45, y, 5), line=first + row, kind="rapid")
+        if name == "rough":
+            program.add_line((30, 18, 5), line=11, kind="rapid")
+            program.add_line((30, 18, -1.3), feed_mm_min=100, line=12)
+            program.add_line((30, 18, 5), line=13, kind="rapid")
+    program.set_section(tool=1, spindle="cw", spindle_rpm=8000, operation=program.add_operation("engrave"))
+    program.add_line((10, 24, 5), line=200, kind="rapid")
+    program.add_line((10, 24, -1.2), feed_mm_min=100, line=201)
+    program.add_line((20, 24, -1.2), feed_mm_min=100, line=201)
+    program.add_line((20, 24, 5), line=202, kind="rapid")
+    return Job("blame", program, {1: swarf.Cutter("flat:d=6,l=20")}, {1: "flat 6"}, {"kind": "box", "lo": LO, "hi": HI})
+
+
+def test_the_right_operation_is_blamed(tmp_path):
+    """All three went over each of the places, or by them: it is neither the last nor the first that is named."""
+    done = swarf.verify(three_operations(), DESIGN, tolerance=0.05, voxel=0.25, loads=False)
+    report.write(report.make_verification(done, "blame"), str(tmp_path / "r.json"))
+    read = json.loads((tmp_path / "r.json").read_text())["findings"]
+    truth = {("gouge", "rough"): (12, -0.3, 30, 18), ("excess", "finish"): (103, 0.1, None, 10),
+             ("gouge", "engrave"): (201, -0.2, None, 24)}
+    assert {(found.kind, found.operation) for found in done.findings} == truth.keys() and len(done.findings) == 3
+    assert [(row["line"], row["operation"]) for row in read] == [(f.line, f.operation) for f in done.findings]
+    for found in done.findings:
+        line, value, x, y = truth[found.kind, found.operation]
+        assert found.line == line and found.severity == "error"
+        assert math.isclose(found.cluster.value, value, abs_tol=0.006)
+        assert abs(found.place[1] - y) < 3.1 and (x is None or abs(found.place[0] - x) < 3.1)
+
+
 def test_too_deep_and_too_high():
     deep = swarf.verify(faced(1.03), DESIGN, tolerance=0.02, voxel=0.25)
     assert [found.cluster.kind for found in deep.findings] == ["gouge"]
