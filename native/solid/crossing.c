@@ -51,9 +51,20 @@ static int are_parallel(const double normal_a[3], const double normal_b[3])
     return squares > 0 && dot(sine, sine) <= least_sine * least_sine * squares;
 }
 
+/* Whether more corners of a triangle lie in the plane of another than the two have in common: then an edge of it may
+ * lie in the other's face. */
+static int has_edge_in(double triangle[3][3], const double plane[3], const double normal[3], double gap, int share)
+{
+    const double limit = gap * sqrt(dot(normal, normal)), offset = dot(plane, normal);
+    int in = 0;
+    for (int i = 0; i < 3; i++) in += fabs(dot(triangle[i], normal) - offset) <= limit;
+    return in > share;
+}
+
 /* Separating axes: the two normals, across the edges in each plane, and the edges of both crossed. Triangles are apart
- * when their projections on one of them are, by more than `gap`. Those with a common corner cannot be; they may touch
- * there, unless they lie on top of each other. */
+ * when their projections on one of them are, by more than `gap`. Those with `share` common corners cannot be; they may
+ * touch there, unless they lie on top of each other or one has an edge in the other's plane, whose normal then tells
+ * nothing. */
 static int meet(const swarf_corners *first, const swarf_corners *second, double gap, int share)
 {
     double a[3][3], b[3][3], edge_a[3][3], edge_b[3][3], normal_a[3], normal_b[3], axis[3];
@@ -71,8 +82,10 @@ static int meet(const swarf_corners *first, const swarf_corners *second, double 
     cross(edge_b[0], edge_b[1], normal_b);
     const int flat = share && are_parallel(normal_a, normal_b);
     const double least = share ? -touching * gap : gap;
-    if (!flat && are_apart(a, b, normal_a, least)) return 0;
-    if (!flat && are_apart(a, b, normal_b, least)) return 0;
+    const int beside_a = !flat && are_apart(a, b, normal_a, least);
+    if (beside_a && !(share && has_edge_in(b, a[0], normal_a, gap, share))) return 0;
+    const int beside_b = !flat && are_apart(a, b, normal_b, least);
+    if (beside_b && !(share && has_edge_in(a, b[0], normal_b, gap, share))) return 0;
     for (int i = 0; i < 3; i++) {
         cross(normal_a, edge_a[i], axis);
         if (are_apart(a, b, axis, least)) return 0;
@@ -81,6 +94,7 @@ static int meet(const swarf_corners *first, const swarf_corners *second, double 
     }
     for (int i = 0; i < 9 && !flat; i++) {
         cross(edge_a[i / 3], edge_b[i % 3], axis);
+        if ((beside_a && are_parallel(axis, normal_a)) || (beside_b && are_parallel(axis, normal_b))) continue;
         if (are_apart(a, b, axis, least)) return 0;
     }
     return 1;
@@ -143,7 +157,7 @@ static int test_place(void *context, size_t place)
             near &=
                 group->lo[other - group->first][k] <= hi[k] + gap && group->hi[other - group->first][k] >= lo[k] - gap;
         if (!near) continue;
-        const int share = common_corners(solid->vertex[place], solid->vertex[other]) > 0;
+        const int share = common_corners(solid->vertex[place], solid->vertex[other]);
         if (share && are_neighbours(solid, place, other)) continue;
         if (!meet(&solid->corners[other], &solid->corners[place], group->work->gap, share)) continue;
         struct pair_list *list = group->found;
