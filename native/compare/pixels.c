@@ -39,7 +39,8 @@ swarf_status swarf_deviation_pixels(const swarf_solid *design, const double *pos
     size_t used;
     SWARF_TRY(gather_points(position, seen, count, sizeof(double), &points, &used));
     double *distance = points + 3 * used;
-    const swarf_status status = swarf_solid_distance(design, points, used, progress, distance, NULL);
+    swarf_status status = swarf_solid_distance(design, points, used, progress, distance, NULL);
+    if (!status) status = swarf_progress_report(progress, 1); /* however short the work was */
     for (size_t i = 0, at = 0; i < count && !status; i++)
         value[i] = seen[i] == SWARF_SEEN_STOCK ? distance[at++] - allowance : NAN;
     free(points);

@@ -523,6 +523,12 @@ static void check_cancel(void)
     swarf_solid_release(design);
 }
 
+static int keep_last(void *user, double fraction)
+{
+    *(double *)user = fraction;
+    return 0;
+}
+
 /* Each pixel is as far from the design as the point it shows; those that show something else have no value. */
 static void check_pixels(void)
 {
@@ -541,6 +547,10 @@ static void check_pixels(void)
     CHECK_OK(swarf_deviation_pixels(design, position, seen + 3, 2, 0, NULL, value));
     CHECK(isnan(value[0]) && isnan(value[1]));
     CHECK_OK(swarf_deviation_pixels(design, NULL, NULL, 0, 0, NULL, NULL));
+    double last = 0;
+    const swarf_progress progress = {keep_last, &last};
+    CHECK_OK(swarf_deviation_pixels(design, position, seen + 3, 2, 0, &progress, value));
+    CHECK(last == 1);
     value[0] = 7;
     CHECK_FAILS(swarf_deviation_pixels(design, position, seen, COUNT, NAN, NULL, value), SWARF_ERROR_ARGUMENT,
                 "allowance");
