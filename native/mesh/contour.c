@@ -318,9 +318,23 @@ static void touch_about(contour *work, const contour_block *block)
     }
 }
 
+/* Whether a vertex of a cell noted, whose vertices are kept already, lies beside it. */
+static int any_beside(const stage *s)
+{
+    uint64_t beside = 0;
+    for (size_t b = 0; b < s->work->block_count; b++) {
+        const contour_block *block = &s->work->blocks[b];
+        for (int x = 0; x < 8 && !block->finished; x++)
+            beside |= block->noted_mask[x] & block->beside_mask[x] &
+                      (s->options->error_mm > 0 ? block->keep_mask[x] : UINT64_MAX);
+    }
+    return beside != 0;
+}
+
 /* The next remedy for the cells noted; without an error to spend all vertices are kept already. */
 static void take_more_care(const stage *s)
 {
+    const int beside = any_beside(s);
     for (size_t b = 0; b < s->work->block_count; b++) s->work->blocks[b].touched = 0;
     for (size_t b = 0; b < s->work->block_count; b++) {
         contour_block *block = &s->work->blocks[b];
@@ -330,8 +344,11 @@ static void take_more_care(const stage *s)
         for (int x = 0; x < 8; x++) {
             const uint64_t noted = block->noted_mask[x], kept = s->options->error_mm > 0 ? block->keep_mask[x] : noted;
             block->changed |= (noted & kept) != 0;
-            block->middle_mask[x] |= noted & block->calm_mask[x];
-            block->calm_mask[x] |= noted & kept;
+            block->own_mask[x] |= noted & kept;
+            if (!beside) {
+                block->middle_mask[x] |= noted & block->calm_mask[x];
+                block->calm_mask[x] |= noted & kept;
+            }
             block->keep_mask[x] |= noted;
             block->noted_mask[x] = 0;
             any |= noted;

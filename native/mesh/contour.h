@@ -75,10 +75,12 @@ typedef struct contour_block {
     uint16_t edge_rank[3][8]; /* crossings before that word */
     uint64_t cell_mask[8];
     uint16_t cell_rank[8];
-    uint64_t flat_mask[8]; /* cells with one vertex, whose crossings are all known from a flat field */
-    uint16_t inside[9][9]; /* signs of the corners of its cells, [x][y], bit z set: material */
+    uint64_t flat_mask[8];   /* cells with one vertex, whose crossings are all known from a flat field */
+    uint64_t beside_mask[8]; /* cells with a vertex in a cell beside them */
+    uint16_t inside[9][9];   /* signs of the corners of its cells, [x][y], bit z set: material */
     /* cells near facets that cut each other, each mask a part of the one before: */
     uint64_t keep_mask[8];   /* their vertices stay when others are left out */
+    uint64_t own_mask[8];    /* and lie in them, not beside */
     uint64_t calm_mask[8];   /* and are where the surface is smooth, their quadrilaterals cut into four */
     uint64_t middle_mask[8]; /* and are in the middle of their crossings, which never cut each other */
     uint64_t noted_mask[8];  /* to go one further */
@@ -194,13 +196,21 @@ typedef struct contour_near {
     const contour *work;
     const contour_block *block;
     swarf_surface_near *part[8], *small[64];
+    swarf_surface_near *wide;
 } contour_near;
 
 /** Of the part that holds a cell of the block, at[] in 0 .. 7; NULL without a surface. Owned by `near`. */
 swarf_status swarf_contour_near_get(contour_near *near, const int at[3], const swarf_surface_near **out);
 /** For a cell that is looked at from many points: of the part's part that holds it, where that pays. */
 swarf_status swarf_contour_near_narrow(contour_near *near, const int at[3], const swarf_surface_near **io);
+/** Of a cell and those about it; owned by `near` until the next call. */
+swarf_status swarf_contour_near_wide(contour_near *near, const int at[3], const swarf_surface_near **out);
 void swarf_contour_near_free(contour_near *near);
+
+/** Where a vertex may lie, in voxels from the low corner of its cell. */
+typedef struct contour_bounds {
+    double lo[3], hi[3];
+} contour_bounds;
 
 /** What is known of one cycle, in voxels from the low corner of its cell. */
 typedef struct contour_polygon {
@@ -211,6 +221,7 @@ typedef struct contour_polygon {
     int32_t piece[12];
     uint8_t edge[12]; /* number of its edge in the cell */
     double corner[8]; /* the field, in voxels */
+    contour_bounds bounds;
     double origin[3]; /* of the cell, in mm */
     double voxel;     /* in mm */
 } contour_polygon;
@@ -239,9 +250,11 @@ typedef struct contour_plane {
 } contour_plane;
 
 /** Point that the planes have in common, the nearest to `about` where they leave a choice; moved along an edge into the
- *  cell where that is possible. What eigenvalues below `least` of the greatest carry is left out. Returns the rank. */
-int swarf_contour_meet(const contour_plane *planes, int count, const double about[3], double least, double out[3]);
-/** Move into the cell; 1 when it was not. */
-int swarf_contour_clamp(double x[3]);
+ *  bounds where that is possible. What eigenvalues below `least` of the greatest carry is left out. Returns the rank.
+ */
+int swarf_contour_meet(const contour_plane *planes, int count, const double about[3], double least,
+                       const contour_bounds *bounds, double out[3]);
+/** Move into the bounds; 1 when it was not. */
+int swarf_contour_clamp(const contour_bounds *bounds, double x[3]);
 
 #endif

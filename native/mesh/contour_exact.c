@@ -14,9 +14,8 @@
 /* Faces that differ by less than 3 degrees are one; leaving the edge out moves the mesh by 0.5 tan 1.5 degrees = 0.013
  * voxels at most. */
 static const double same_face_cosine = 0.99863;
-/* One cutter piece on one move may turn by 60 degrees in a cell and be one face: a small ball or corner radius. */
-static const double same_piece_cosine = 0.5;
-/* Crossings of one piece that differ by more than 37 degrees are on two sides of what it cut. */
+/* Crossings of one piece that differ by more than 37 degrees may be on two sides of what it cut: the groove of a
+ * point, whose sides are one cone. Those of a small ball do not meet as planes would, taken again close to that. */
 static const double one_face_cosine = 0.8;
 /* Eigenvalues below this part of the greatest: planes that differ by less than half of same_face. The first guess takes
  * planes apart from where they meet, so it is careful. */
@@ -145,19 +144,21 @@ static double apart(const double a[3], const double b[3])
 static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int count, double x[3])
 {
     contour_plane planes[MOST_FACES];
+    const contour_bounds *bounds = &c->polygon->bounds;
     for (int i = 0; i < count; i++) planes[i] = chosen[i]->plane;
-    int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, x), seen = 0, outside = 0;
+    int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, bounds, x), seen = 0, outside = 0;
     const size_t rounds = sizeof approach / sizeof *approach;
     for (size_t round = 0; round < rounds && rank > 1; round++) {
-        swarf_contour_clamp(x);
+        swarf_contour_clamp(&c->polygon->bounds, x);
         const double about[3] = {x[0], x[1], x[2]};
         seen = take_again(c, chosen, count, x, approach[round], planes);
-        rank = swarf_contour_meet(planes, count, about, least_eigenvalue, x);
+        rank = swarf_contour_meet(planes, count, about, least_eigenvalue, bounds, x);
         if (seen && apart(x, about) < settled * settled && round + 2 < rounds) round = rounds - 2;
     }
-    for (int k = 0; k < 3; k++) outside |= x[k] < -allowed_outside || x[k] > 1 + allowed_outside;
+    for (int k = 0; k < 3; k++)
+        outside |= x[k] < bounds->lo[k] - allowed_outside || x[k] > bounds->hi[k] + allowed_outside;
     swarf_surface_point found;
-    swarf_contour_clamp(x);
+    swarf_contour_clamp(&c->polygon->bounds, x);
     return rank > 1 && seen && !outside && fabs(look(c, x, &found)) <= on_surface ? rank : 1;
 }
 
@@ -167,7 +168,7 @@ static int project(const cell *c, double x[3], swarf_surface_point *found)
     double value = look(c, x, found);
     for (int step = 0; step < 8 && fabs(value) > close_enough; step++) {
         for (int k = 0; k < 3; k++) x[k] -= value * found->normal[k];
-        swarf_contour_clamp(x);
+        swarf_contour_clamp(&c->polygon->bounds, x);
         value = look(c, x, found);
     }
     return fabs(value) <= on_surface;
@@ -181,7 +182,7 @@ static void take_crossing(const cell *c, double x[3])
     for (int i = 1; i < polygon->count; i++)
         if (apart(polygon->point[i], c->middle) < apart(polygon->point[chosen], c->middle)) chosen = i;
     memcpy(x, polygon->point[chosen], sizeof polygon->point[chosen]);
-    swarf_contour_clamp(x);
+    swarf_contour_clamp(&c->polygon->bounds, x);
 }
 
 /* Where two of the faces meet nearest to the middle of the crossings. */
@@ -253,7 +254,7 @@ int swarf_contour_vertex_exact(const contour_polygon *polygon, const swarf_surfa
         for (int j = 0; j < i; j++) least_dot = fmin(least_dot, dot(polygon->normal[i], polygon->normal[j]));
         one_piece &= polygon->move[i] == polygon->move[0] && polygon->piece[i] == polygon->piece[0];
     }
-    if (least_dot < (one_piece ? same_piece_cosine : same_face_cosine)) {
+    if (least_dot < (one_piece ? one_face_cosine : same_face_cosine)) {
         find_faces(&c);
         const int rank = meet(&c, out);
         if (rank > 1) return rank;

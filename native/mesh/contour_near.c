@@ -57,8 +57,23 @@ swarf_status swarf_contour_near_narrow(contour_near *near, const int at[3], cons
     return SWARF_OK;
 }
 
+swarf_status swarf_contour_near_wide(contour_near *near, const int at[3], const swarf_surface_near **out)
+{
+    const swarf_tree_layout *layout = near->work->layout;
+    swarf_box box;
+    for (int k = 0; k < 3; k++) {
+        box.lo[k] = layout->origin[k] + (near->block->ijk[k] + at[k] - 1 - around) * layout->voxel;
+        box.hi[k] = layout->origin[k] + (near->block->ijk[k] + at[k] + 2 + around) * layout->voxel;
+    }
+    if (!near->wide) SWARF_TRY(swarf_surface_near_create(near->work->surface, &near->wide));
+    SWARF_TRY(swarf_surface_gather(near->wide, near->work->moves, &box));
+    *out = near->wide;
+    return SWARF_OK;
+}
+
 void swarf_contour_near_free(contour_near *near)
 {
+    swarf_surface_near_destroy(near->wide);
     for (int i = 0; i < 8; i++) swarf_surface_near_destroy(near->part[i]);
     for (int i = 0; i < 64; i++) swarf_surface_near_destroy(near->small[i]);
 }

@@ -91,6 +91,11 @@ static void place_middle(const contour_polygon *polygon, double out[3])
  * vertex; and the cosine between their normals, for 0.3 degrees. */
 static const double same_plane = 1e-3, same_plane_cosine = 0.999986;
 
+/* Faces beside a wedge differ by more than 15 degrees. */
+static const double wedge_cosine = 0.966;
+/* In voxels: how far along the edge of a wedge a vertex may be moved. */
+static const double farthest_along = 0.5;
+
 /* Whether the field is flat round all crossings. */
 static int is_flat(const contour_polygon *polygon)
 {
@@ -124,7 +129,7 @@ static int place_flat(const contour_polygon *polygon, const swarf_surface_near *
         if (fabs(found.value) > same_plane * polygon->voxel || cosine < same_plane_cosine) return 0;
     }
     memcpy(out, middle, sizeof middle);
-    swarf_contour_clamp(out);
+    swarf_contour_clamp(&polygon->bounds, out);
     return 1;
 }
 
@@ -173,10 +178,69 @@ static int place_by_field(placing *p, const int at[3], contour_polygon *polygon,
     return swarf_contour_vertex(polygon, out);
 }
 
-/* Place the vertex of a cycle on the exact surface if that made any of its crossings, else by the field. Returns
- * whether it lies on a flat face. */
-static int place_vertex(placing *p, const int at[3], int config, contour_polygon *polygon,
-                        const swarf_surface_near *near, double out[3])
+/* Whether crossings touch a cell. */
+static int is_active(placing *p, const int at[3])
+{
+    const float *value = values_at(p, at);
+    int inside = 0;
+    for (int c = 0; c < 8; c++)
+        inside += value[(c >> 2) * SWARF_HALO * SWARF_HALO + (c >> 1 & 1) * SWARF_HALO + (c & 1)] < 0;
+    return inside > 0 && inside < 8;
+}
+
+/* Where faces meet in a cell beside this one that no crossing touches: there a wedge ends that is narrower than a
+ * voxel, and no other vertex is there. Without this cell's vertex on it the edge would have a notch. Sets *rank where
+ * they do, no farther than half a voxel from where they come nearest to the crossings: beyond, the edge is another
+ * cell's. */
+static swarf_status place_beside(placing *p, const int at[3], contour_polygon *polygon, double out[3], int *rank)
+{
+    const swarf_surface_near *near;
+    const contour_bounds own = polygon->bounds;
+    double free[3], least = farthest_along * farthest_along;
+    SWARF_TRY(swarf_contour_near_wide(&p->near, at, &near));
+    for (int k = 0; k < 3; k++) {
+        polygon->bounds.lo[k] -= 1;
+        polygon->bounds.hi[k] += 1;
+    }
+    const int meeting = swarf_contour_vertex_exact(polygon, near, free) > 1;
+    for (int n = 0; meeting && n < 27; n++) {
+        const int way[3] = {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
+        const int there[3] = {at[0] + way[0], at[1] + way[1], at[2] + way[2]};
+        double x[3], away = 0, nearest = 0;
+        for (int k = 0; k < 3; k++) {
+            polygon->bounds.lo[k] = own.lo[k] + way[k];
+            polygon->bounds.hi[k] = own.hi[k] + way[k];
+            const double to = fmin(fmax(free[k], way[k]), way[k] + 1) - free[k];
+            nearest += to * to;
+        }
+        if (nearest >= least || is_active(p, there)) continue;
+        const int found = swarf_contour_vertex_exact(polygon, near, x);
+        for (int k = 0; k < 3; k++) away += (x[k] - free[k]) * (x[k] - free[k]);
+        if (found < 2 || away >= least) continue;
+        least = away;
+        *rank = found;
+        memcpy(out, x, sizeof x);
+    }
+    polygon->bounds = own;
+    return SWARF_OK;
+}
+
+/* Whether the crossings of a cycle differ by more than what one face does. */
+static int has_faces(const contour_polygon *polygon)
+{
+    double least = 1;
+    for (int i = 0; i < polygon->count; i++)
+        for (int j = 0; j < i; j++)
+            least = fmin(least, polygon->normal[i][0] * polygon->normal[j][0] +
+                                    polygon->normal[i][1] * polygon->normal[j][1] +
+                                    polygon->normal[i][2] * polygon->normal[j][2]);
+    return least < wedge_cosine;
+}
+
+/* Place the vertex of a cycle on the exact surface if that made any of its crossings, else by the field. Sets
+ * *flat where it lies on a flat face. */
+static swarf_status place_vertex(placing *p, const int at[3], int config, contour_polygon *polygon,
+                                 const swarf_surface_near *near, double out[3], int *flat)
 {
     contour_block *block = p->block;
     const int bit = at[1] * 8 + at[2];
@@ -187,11 +251,12 @@ static int place_vertex(placing *p, const int at[3], int config, contour_polygon
             *t = fmin(fmax(*t, SWARF_CONTOUR_LAST_MARGIN), 1 - SWARF_CONTOUR_LAST_MARGIN);
         }
         place_middle(polygon, out);
-        return 0;
+        return SWARF_OK;
     }
     if (place_flat(polygon, near, out)) {
         block->exact_count += near != NULL;
-        return 1;
+        *flat = 1;
+        return SWARF_OK;
     }
     int rank = 1, exact = 0;
     if (near) {
@@ -203,6 +268,10 @@ static int place_vertex(placing *p, const int at[3], int config, contour_polygon
             swarf_contour_vertex_smooth(&known, near, out);
         else if (exact)
             rank = swarf_contour_vertex_exact(&known, near, out);
+        if (exact && !calm && !(block->own_mask[at[0]] >> bit & 1) && rank == 1 && has_faces(&known)) {
+            SWARF_TRY(place_beside(p, at, &known, out, &rank));
+            if (rank > 1) block->beside_mask[at[0]] |= UINT64_C(1) << bit;
+        }
     }
     if (!exact && calm)
         place_middle(polygon, out);
@@ -210,7 +279,7 @@ static int place_vertex(placing *p, const int at[3], int config, contour_polygon
         rank = place_by_field(p, at, polygon, out);
     block->sharp_count += rank > 1;
     block->exact_count += (uint32_t)exact;
-    return 0;
+    return SWARF_OK;
 }
 
 static swarf_status place_cell(placing *p, const int at[3], contour_cell *cell, uint32_t *used)
@@ -222,13 +291,18 @@ static swarf_status place_cell(placing *p, const int at[3], contour_cell *cell, 
     SWARF_TRY(swarf_contour_near_get(&p->near, at, &surface));
     contour_polygon polygon;
     polygon.voxel = layout->voxel;
-    for (int k = 0; k < 3; k++) polygon.origin[k] = layout->origin[k] + (block->ijk[k] + at[k]) * layout->voxel;
+    for (int k = 0; k < 3; k++) {
+        polygon.origin[k] = layout->origin[k] + (block->ijk[k] + at[k]) * layout->voxel;
+        polygon.bounds.lo[k] = SWARF_CONTOUR_MARGIN;
+        polygon.bounds.hi[k] = 1 - SWARF_CONTOUR_MARGIN;
+    }
     cell->first = (uint16_t)*used;
     for (int cycle = 0; cycle < joined->count; cycle++) {
         double inside[3] = {0.5, 0.5, 0.5};
         gather(p, at, joined, cycle, &polygon);
         if (!is_flat(&polygon)) SWARF_TRY(swarf_contour_near_narrow(&p->near, at, &surface));
-        const int flat = polygon.count > 0 && place_vertex(p, at, cell->config, &polygon, surface, inside);
+        int flat = 0;
+        if (polygon.count > 0) SWARF_TRY(place_vertex(p, at, cell->config, &polygon, surface, inside, &flat));
         if (flat && joined->count == 1) block->flat_mask[at[0]] |= UINT64_C(1) << (at[1] * 8 + at[2]);
         for (int k = 0; k < 3; k++)
             block->vertices[*used].xyz[k] = (float)(polygon.origin[k] + inside[k] * layout->voxel);
@@ -275,6 +349,7 @@ swarf_status swarf_contour_place(contour *work, contour_block *block)
     p.fetched = 0;
     block->sharp_count = block->exact_count = 0;
     memset(block->flat_mask, 0, sizeof block->flat_mask);
+    memset(block->beside_mask, 0, sizeof block->beside_mask);
     free(block->cells);
     free(block->vertices);
     block->cells = NULL;

@@ -16,7 +16,6 @@
 static const double same_face_cosine = 0.866;
 /* Eigenvalues below this part of the greatest carry nothing but the noise of the gradients. */
 static const double least_eigenvalue = 0.04;
-static const double margin = SWARF_CONTOUR_MARGIN;
 
 static double dot(const double a[3], const double b[3])
 {
@@ -31,11 +30,11 @@ static void middle_of(const contour_polygon *polygon, double out[3])
     }
 }
 
-int swarf_contour_clamp(double x[3])
+int swarf_contour_clamp(const contour_bounds *bounds, double x[3])
 {
     int moved = 0;
     for (int k = 0; k < 3; k++) {
-        const double kept = fmin(fmax(x[k], margin), 1 - margin);
+        const double kept = fmin(fmax(x[k], bounds->lo[k]), bounds->hi[k]);
         moved |= kept != x[k];
         x[k] = kept;
     }
@@ -71,18 +70,18 @@ static void project(const contour_polygon *polygon, double x[3])
         const double square = dot(gradient, gradient);
         if (fabs(value) < 1e-5 || square < 1e-6) return;
         for (int k = 0; k < 3; k++) x[k] -= value * gradient[k] / square;
-        swarf_contour_clamp(x);
+        swarf_contour_clamp(&polygon->bounds, x);
     }
 }
 
-/* Move along an edge to where it passes the cell, if it does; through the slabs of the cell. */
-static void move_inside(const double edge[3], double x[3])
+/* Move along an edge to where it passes the bounds, if it does; through their slabs. */
+static void move_inside(const contour_bounds *bounds, const double edge[3], double x[3])
 {
     double lo = -4, hi = 4;
     for (int k = 0; k < 3; k++) {
         const double slope = edge[k];
         if (fabs(slope) < 1e-9) continue;
-        const double first = (margin - x[k]) / slope, last = (1 - margin - x[k]) / slope;
+        const double first = (bounds->lo[k] - x[k]) / slope, last = (bounds->hi[k] - x[k]) / slope;
         lo = fmax(lo, fmin(first, last));
         hi = fmin(hi, fmax(first, last));
     }
@@ -92,7 +91,8 @@ static void move_inside(const double edge[3], double x[3])
 }
 
 /* Two planes, most of what comes, in closed form: their matrix has the eigenvalues 1 + c and 1 - c. */
-static int meet_two(const contour_plane *a, const contour_plane *b, const double about[3], double least, double out[3])
+static int meet_two(const contour_plane *a, const contour_plane *b, const double about[3], double least,
+                    const contour_bounds *bounds, double out[3])
 {
     const double *n = a->normal, *m = b->normal, c = dot(n, m);
     if (!(1 - fabs(c) > least * (1 + fabs(c)))) return 0;
@@ -103,14 +103,15 @@ static int meet_two(const contour_plane *a, const contour_plane *b, const double
         out[k] = about[k] + ((r - c * s) * n[k] + (s - c * r) * m[k]) / size;
         edge[k] = (n[i] * m[j] - n[j] * m[i]) / sqrt(size);
     }
-    move_inside(edge, out);
+    move_inside(bounds, edge, out);
     return 1;
 }
 
-int swarf_contour_meet(const contour_plane *planes, int count, const double about[3], double least, double out[3])
+int swarf_contour_meet(const contour_plane *planes, int count, const double about[3], double least,
+                       const contour_bounds *bounds, double out[3])
 {
     double a[3][3] = {{0}}, right[3] = {0}, value[3], vector[3][3];
-    if (count == 2 && meet_two(&planes[0], &planes[1], about, least, out)) return 2;
+    if (count == 2 && meet_two(&planes[0], &planes[1], about, least, bounds, out)) return 2;
     for (int i = 0; i < count; i++) {
         const double *n = planes[i].normal;
         const double away = dot(n, planes[i].point) - dot(n, about);
@@ -124,7 +125,7 @@ int swarf_contour_meet(const contour_plane *planes, int count, const double abou
     memcpy(out, about, 3 * sizeof *out);
     for (int i = 0; i < 3 && value[i] > least * value[0] && value[i] > 0; i++, rank++)
         for (int k = 0; k < 3; k++) out[k] += dot(vector[i], right) / value[i] * vector[i][k];
-    if (rank == 2) move_inside(vector[2], out);
+    if (rank == 2) move_inside(bounds, vector[2], out);
     return rank;
 }
 
@@ -136,13 +137,14 @@ static int outside(const double x[3])
 }
 
 /* A corner that lies in another cell is not this cell's: its edge is, or its face. */
-static int meet_inside(const contour_plane *planes, int count, const double about[3], double out[3])
+static int meet_inside(const contour_plane *planes, int count, const double about[3], const contour_bounds *bounds,
+                       double out[3])
 {
     double least = least_eigenvalue;
-    int rank = swarf_contour_meet(planes, count, about, least, out);
+    int rank = swarf_contour_meet(planes, count, about, least, bounds, out);
     while (rank > 1 && outside(out) && 5 * least < 1) {
         least *= 5;
-        rank = swarf_contour_meet(planes, count, about, least, out);
+        rank = swarf_contour_meet(planes, count, about, least, bounds, out);
     }
     return rank;
 }
@@ -161,9 +163,9 @@ int swarf_contour_vertex(const contour_polygon *polygon, double out[3])
             memcpy(planes[i].point, polygon->point[i], sizeof planes[i].point);
             memcpy(planes[i].normal, polygon->normal[i], sizeof planes[i].normal);
         }
-        rank = meet_inside(planes, polygon->count, middle, x);
+        rank = meet_inside(planes, polygon->count, middle, &polygon->bounds, x);
     }
-    if (swarf_contour_clamp(x) || rank < 2) project(polygon, x);
+    if (swarf_contour_clamp(&polygon->bounds, x) || rank < 2) project(polygon, x);
     memcpy(out, x, sizeof x);
     return rank;
 }

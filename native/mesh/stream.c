@@ -146,6 +146,7 @@ static swarf_status hand_on(streaming *s)
             *block = none;
         } else {
             memcpy(to->keep_mask, block->keep_mask, sizeof to->keep_mask);
+            memcpy(to->own_mask, block->own_mask, sizeof to->own_mask);
             memcpy(to->calm_mask, block->calm_mask, sizeof to->calm_mask);
             memcpy(to->middle_mask, block->middle_mask, sizeof to->middle_mask);
         }
