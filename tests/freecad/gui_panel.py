@@ -220,6 +220,8 @@ class Watching(PanelTest):
             seen = image.pixelColor(int((x + 1) / 2 * image.width()), int((1 - y) / 2 * image.height()))
             shown = panel.operations.topLevelItem(index).icon(0).pixmap(16, 16).toImage().pixelColor(8, 8)
             assert abs((seen.hue() - shown.hue() + 180) % 360 - 180) < 14, (index, seen.getRgb(), shown.getRgb())
+            selected = panel.operations.topLevelItem(index).icon(0).pixmap(16, 16, QtGui.QIcon.Selected)
+            assert selected.toImage().pixelColor(8, 8) == shown
         application.setStyleSheet(style)
         panel.tools.set_colouring("material")
         panel.setFloating(False)

@@ -57,7 +57,9 @@ class OperationList(QtWidgets.QTreeWidget):
     def _chip(index):
         pixmap = QtGui.QPixmap(24, 24)
         pixmap.fill(colours.of_operation(index))
-        return QtGui.QIcon(pixmap)
+        icon = QtGui.QIcon(pixmap)
+        icon.addPixmap(pixmap, QtGui.QIcon.Selected)  # else Qt tints it there, and it is no longer the time line's
+        return icon
 
     def _changed(self, item, column):
         if not self._filling and column == 0:
