@@ -24,7 +24,7 @@ typedef struct group {
 } group;
 
 _Static_assert(GROUP_EDGE *GROUP_EDGE == SWARF_GROUP, "a group is a square of packets");
-_Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a square are one packet");
+_Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a square fit in one packet");
 
 /** The packets of the square from (x0, y0). */
 static void place_group(const swarf_canvas *c, int32_t x0, int32_t y0, group *g)

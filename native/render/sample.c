@@ -6,7 +6,7 @@
  * rows on either side, for a sample is on an edge when half a square away something else is seen that goes on beyond:
  *
  *   number   per square of the strip: of its samples, -1: smooth, its middle stands for all of it
- *   sample   n * n sights per rough square, a packet each
+ *   sample   n * n sights per rough square
  */
 #include "base/parallel.h"
 #include "base/status.h"

@@ -249,20 +249,28 @@ swarf_status swarf_scene_set_fixtures(swarf_scene *scene, const swarf_triangles 
     size_t filled = 0;
     for (size_t i = 0; i < count; i++) filled += triangles[i].triangle_count > 0;
     if (filled) SWARF_TRY(swarf_fixtures_create(triangles, count, &fixtures));
+    const swarf_status status = swarf_stock_enter_write(scene->stock); /* no picture is being made of what goes */
+    if (status != SWARF_OK) {
+        swarf_fixtures_destroy(fixtures);
+        return status;
+    }
     swarf_recall_forget(&scene->recall);
     swarf_fixtures_destroy(scene->fixtures);
     scene->fixtures = fixtures;
+    swarf_stock_leave(scene->stock);
     return SWARF_OK;
 }
 
 swarf_status swarf_scene_set_surface(swarf_scene *scene, swarf_surface *surface, size_t moves)
 {
     SWARF_REQUIRE(scene, "scene: missing");
+    SWARF_TRY(swarf_stock_enter_write(scene->stock));
     if (surface != scene->surface || moves != scene->surface_moves) swarf_recall_forget(&scene->recall);
     if (surface) (void)swarf_surface_retain(surface);
     swarf_surface_release(scene->surface);
     scene->surface = surface;
     scene->surface_moves = moves;
+    swarf_stock_leave(scene->stock);
     return SWARF_OK;
 }
 

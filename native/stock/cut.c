@@ -215,7 +215,7 @@ static swarf_block block_of(const swarf_column *column, const int32_t at[3], int
                          (float)(at[2] * SWARF_LEAF_DIM - column->middle[2]) + half, half, half};
 }
 
-/* Leaves lie anywhere in memory: what will be read soon is asked for ahead, the leaf itself while tracks are culled,
+/* Leaves lie anywhere in memory: what will be read soon is asked for ahead, its place while tracks are culled,
  * its values while the leaf before it is cut. */
 static void fetch_leaf(const struct cut_work *work, const int32_t at[3])
 {

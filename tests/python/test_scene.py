@@ -170,6 +170,37 @@ def test_the_exact_surface_knows_its_moves():
         scene.set_moves(3)
 
 
+def test_what_is_shown_stays_while_a_picture_is_made():
+    first = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
+    stock = first.copy()
+    program = swarf.Program(start=(10, 20, -4))
+    program.add_operation("slot")
+    program.set_section(tool=1)
+    program.add_line((50, 20, -4), feed_mm_min=100)
+    tools = {1: swarf.Cutter("flat:d=10,l=20")}
+    stock.simulate(program, tools)
+    scene = swarf.Scene(stock)
+    scene.set_surface(first, program, tools)
+    camera = swarf.Camera((30, -40, 60), (30, 20, 0), (0, 0, 1), height=60)
+    calm = bytes(scene.render(camera, 200, 150, samples=2).rgba)
+    surface, refused = swarf.Surface(first, program, tools), []
+
+    def meddle(_fraction):
+        for change in (lambda: scene.set_moves(0), lambda: scene.set_fixtures([]),
+                       lambda: scene.show_surface(surface)):
+            with pytest.raises(swarf.BusyError):
+                change()
+            refused.append(change)
+
+    scene.set_moves(0)  # and back, so that nothing is known of the picture before
+    scene.set_moves(None)
+    assert bytes(scene.render(camera, 200, 150, samples=2, progress=meddle).rgba) == calm and refused
+    scene.set_moves(0)
+    assert bytes(scene.render(camera, 200, 150, samples=2).rgba) != calm
+    scene.set_moves(None)
+    assert bytes(scene.render(camera, 200, 150, samples=2).rgba) == calm
+
+
 def test_the_exact_surface_of_the_set_up_before():
     """A slot of the set-up before has sharp edges in the next one, whose voxels round them."""
     first = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
