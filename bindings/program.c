@@ -89,7 +89,8 @@ static PyObject *program_set_section(PyObject *self, PyObject *args, PyObject *k
 {
     static char *names[] = {"tool", "operation", "spindle", "spindle_rpm", "coolant", "work_offset", NULL};
     const char *spindle = spindle_names[0];
-    swarf_section section = {.tool = -1};
+    const size_t operations = swarf_program_operation_count(handle_of(self));
+    swarf_section section = {.tool = -1, .operation = operations ? (int)operations - 1 : 0};
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "|$iisdii:set_section", names, &section.tool, &section.operation,
                                      &spindle, &section.spindle_rpm, &section.coolant, &section.work_offset))
         return NULL;
@@ -374,9 +375,10 @@ static PyMethodDef program_methods[] = {
     {"add_operation", WITH_KEYWORDS(program_add_operation), METH_VARARGS | METH_KEYWORDS,
      "add_operation($self, name)\n--\n\nAdd an operation, make it current and return its index."},
     {"set_section", WITH_KEYWORDS(program_set_section), METH_VARARGS | METH_KEYWORDS,
-     "set_section($self, *, tool=-1, operation=0, spindle='off', spindle_rpm=0.0, coolant=0, work_offset=0)\n--\n\n"
-     "What the moves that follow share: tool number (-1: none), index of the operation, spindle \"off\", \"cw\"\n"
-     "or \"ccw\", coolant (bit 0 mist, bit 1 flood), work offset (0 machine, 1 G54 ...)."},
+     "set_section($self, *, tool=-1, operation=..., spindle='off', spindle_rpm=0.0, coolant=0, work_offset=0)\n--\n\n"
+     "What the moves that follow share: tool number (-1: none), index of the operation (the one added\n"
+     "last), spindle \"off\", \"cw\" or \"ccw\", coolant (bit 0 mist, bit 1 flood), work offset (0 machine, 1 G54 "
+     "...)."},
     {"add_line", WITH_KEYWORDS(program_add_line), METH_VARARGS | METH_KEYWORDS,
      "add_line($self, end, *, kind='feed', feed_mm_min=0.0, line=0)\n--\n\n"
      "Add a straight move to `end` (three numbers, mm); kind \"feed\", \"rapid\", \"probe\" or \"position\"."},

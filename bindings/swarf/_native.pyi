@@ -143,14 +143,14 @@ class Program:
         self,
         *,
         tool: int = -1,
-        operation: int = 0,
+        operation: int = ...,
         spindle: Literal["off", "cw", "ccw"] = "off",
         spindle_rpm: float = 0.0,
         coolant: int = 0,
         work_offset: int = 0,
     ) -> None:
-        """What the moves that follow share: tool number (-1: none), index of the operation, spindle, coolant (bit 0
-        mist, bit 1 flood), work offset (0 machine, 1 G54 ...)."""
+        """What the moves that follow share: tool number (-1: none), index of the operation (the one added
+        last), spindle, coolant (bit 0 mist, bit 1 flood), work offset (0 machine, 1 G54 ...)."""
     def add_line(
         self,
         end: Point,

@@ -55,6 +55,10 @@ def test_program_keeps_what_it_is_given():
     assert struct.unpack("=4id2i", program.sections.tobytes()[-32:])[:1] == (7,)
     # pi mm at 60 mm/min, 1.5 s, and the rapid of sqrt(14) mm
     assert program.seconds(1000) == pytest.approx(math.pi + 1.5 + math.sqrt(14) * 60 / 1000, rel=1e-6)
+    del moves  # while it lives the program cannot grow
+    program.set_section(tool=8)  # of the operation added last
+    program.add_line((0, 0, 0))
+    assert struct.unpack("=4id2i", program.sections.tobytes()[-32:])[:2] == (8, 1)
 
 
 def test_moves_are_records_in_numpy(slot):

@@ -160,7 +160,7 @@ def test_what_is_dropped_is_not_in_the_picture(job, tmp_path, monkeypatch):
     class Recorded:
         def __init__(self, stock):
             self._scene = swarf.Scene(stock)
-            self.set_surface = self._scene.set_surface
+            self.show_surface = self._scene.show_surface
 
         def render(self, *words, **named):
             pictures.append(self._scene.render(*words, **named))

@@ -75,6 +75,9 @@ def run(arguments: argparse.Namespace) -> int:
     told = [f"warning: line {piece.line}: {piece.text}" for piece in result.loose.pieces]
     if result.loose.crumbs:
         told.append(f"note: {result.loose.crumbs} crumbs of a few voxels are loose")
+    cuts = getattr(result.contour, "intersections_left", 0)
+    if cuts:
+        told.append(f"warning: {cuts} pairs of triangles cut each other: the surface touches itself there")
     if result.resampled_voxels:
         told.append(f"note: the stock was turned into new voxels, which are off by {result.resampled_voxels:g} voxels at "
                     "most at its edges; quarter turns keep them as they are")
