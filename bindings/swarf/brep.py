@@ -12,11 +12,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Optional, Sequence
+from itertools import product
+from typing import Iterator, Optional, Sequence
 
 from ._native import Mesh, Surface
 from .progress import Report, check, share
-from .regions import Regions, find
+from .regions import NotAnalytic, Regions, find
 from .shapes import CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet, on, tangency, unit
 
 __all__ = ["CONE", "CYLINDER", "PLANE", "SPHERE", "TORUS", "Brep", "Edge", "Face", "NotAnalytic", "make"]
@@ -34,18 +35,17 @@ CURVE = 1e-5
 #: Cosine of the angle from which on faces cross and do not touch, as far as the mesh can tell.
 CROSSING = 0.8
 
-
 #: Points of an edge that are looked at, about.
 MOST_SAMPLES = 32
 
+#: Points of a curve; it becomes no smoother by more.
+MOST_POINTS = 200
 
-class NotAnalytic(ValueError):
-    """A stock that is not bounded by these faces alone, or whose edges are not found. ``share``: part of the area that
-    lies on such faces."""
+#: Halves of a piece of a curve are shorter than it, by this at least; else it turns back.
+HALF = 0.75
 
-    def __init__(self, text: str, share: float) -> None:
-        super().__init__(text)
-        self.share = share
+#: Sine of the angle between faces below which their normals do not tell where their edge goes.
+TANGENT = 1e-4
 
 
 @dataclass
@@ -100,6 +100,8 @@ class _Maker:
 
     def __init__(self, regions: Regions, voxel: float) -> None:
         self.regions, self.voxel = regions, voxel
+        self.progress: Report = None
+        self.done = 0.0
         self.left = 0.0  # what equations are off, mm
         self.chains: list[_Chain] = []
         self.chain_of: dict[tuple[int, int], tuple[int, bool]] = {}  # half-edge of a border -> its chain, forwards
@@ -136,7 +138,7 @@ class _Maker:
             vertices.append(half[1])
             if half[1] in corners or half[1] == first[0]:
                 break
-            half = next(way for way in ways[half[1]] if way[1] != half[0])
+            half = [way for way in ways[half[1]] if way[1] != half[0]][0]
         self.chains.append(_Chain(left, right, vertices, vertices[0] == vertices[-1] and vertices[0] not in corners))
 
     # ---- where it lies ----
@@ -173,6 +175,7 @@ class _Maker:
         chain.touching = found is not None and found[1] < SLOPPY and distance(found[0], place) < 3 * self.voxel
 
     def solve(self, equations: Sequence[Equations], start: Vector, what: str) -> Vector:
+        check(self.progress, self.done)
         found = meet(equations, start)
         if found is None or found[1] > SLOPPY or distance(found[0], start) > 4 * self.voxel:
             raise self.fail("%s is not found near (%.3f, %.3f, %.3f)" % (what, *start))
@@ -189,12 +192,17 @@ class _Maker:
                 if chain.touching:
                     meeting.setdefault(vertex, []).append(self.touch(chain))
         corners: list[Vector] = []
+        cells: dict[tuple[int, ...], list[int]] = {}  # corners by cubes as wide as they may be apart
         for vertex in sorted(beside):
             place = self.solve(self.equations(sorted(beside[vertex])) + meeting.get(vertex, []),
                                self.regions.vertices[vertex], "a corner")
-            same = (k for k, corner in enumerate(corners) if distance(corner, place) < SLOPPY)
-            self.corner_of[vertex] = next(same, len(corners))
+            cell = [math.floor(x / SLOPPY) for x in place]
+            near = (k for way in product((-1, 0, 1), repeat=3)
+                    for k in cells.get((cell[0] + way[0], cell[1] + way[1], cell[2] + way[2]), ())
+                    if distance(corners[k], place) < SLOPPY)
+            self.corner_of[vertex] = min(near, default=len(corners))
             if self.corner_of[vertex] == len(corners):
+                cells.setdefault(tuple(cell), []).append(len(corners))
                 corners.append(place)
         return corners
 
@@ -240,14 +248,11 @@ class _Maker:
 
     def curve(self, chain: _Chain, start: int, end: int, points: list[Vector]) -> Edge:
         """A curve of cubics, finer and finer until their middles are on it."""
+        if chain.touching:
+            raise self.fail("two faces touch along a curve that is no line and no circle")
         equations = self.contact(chain)
-        (left, right), directions = (self.shape(region) for region in (chain.left, chain.right)), []
-        for k, point in enumerate(points):
-            way = add(points[min(k + 1, len(points) - 1)], points[max(k - 1, 0)], -1)
-            if chain.touching:
-                raise self.fail("two faces touch along a curve that is no line and no circle")
-            direction = unit(cross(left.see(point)[1], right.see(point)[1]))
-            directions.append(direction if dot(direction, way) > 0 else add((0.0, 0.0, 0.0), direction, -1))
+        directions = [self.direction(chain, point, add(points[min(k + 1, len(points) - 1)], points[max(k - 1, 0)], -1))
+                      for k, point in enumerate(points)]
         k = 0
         while k + 1 < len(points):
             length = distance(points[k], points[k + 1])
@@ -257,22 +262,30 @@ class _Maker:
             if distance(true, middle) < CURVE or length < 1e-3 * self.voxel:
                 k += 1
                 continue
-            direction = unit(cross(left.see(true)[1], right.see(true)[1]))
-            if dot(direction, add(points[k + 1], points[k], -1)) < 0:
-                direction = add((0.0, 0.0, 0.0), direction, -1)
+            if max(distance(points[k], true), distance(true, points[k + 1])) > HALF * length or len(points) >= MOST_POINTS:
+                raise self.fail("an edge is no smooth curve near (%.3f, %.3f, %.3f)" % true)
+            directions.insert(k + 1, self.direction(chain, true, add(points[k + 1], points[k], -1)))
             points.insert(k + 1, true)
-            directions.insert(k + 1, direction)
         return Edge(start, end, points=points, directions=directions)
 
+    def direction(self, chain: _Chain, place: Vector, way: Vector) -> Vector:
+        """Where the edge goes at a place, about along a way; that way itself where the faces are tangent."""
+        along = cross(self.shape(chain.left).see(place)[1], self.shape(chain.right).see(place)[1])
+        if math.hypot(*along) < TANGENT:
+            return unit(way)
+        return unit(along) if dot(along, way) > 0 else add((0.0, 0.0, 0.0), unit(along), -1)
+
     def make(self, progress: Report) -> Brep:
+        self.progress = progress
         self.find_chains()
         for chain in self.chains:
+            check(progress, 0.0)
             self.tell_touching(chain)
         corners = self.place_corners_and_closed()
         edges: list[Edge] = []
         edge_of: dict[int, int] = {}
         for number, chain in enumerate(self.chains):
-            check(progress, number / len(self.chains))
+            self.done = number / len(self.chains)
             if not self.is_point(chain):
                 edge_of[number] = len(edges)
                 edges.append(self.edge(chain, corners))
@@ -339,42 +352,50 @@ def _is_line(points: list[Vector], close: float) -> bool:
     return length > 0 and all(math.hypot(*cross(add(point, points[0], -1), way)) <= close * length for point in points)
 
 
-def _turn_axes(shape: Shape) -> Optional[Vector]:
-    """Direction about which a shape looks the same all round; None where that is any."""
-    return None if shape.kind == SPHERE else shape.axis
+def _axes(a: Shape, b: Shape, place: Vector) -> Iterator[tuple[Vector, Vector]]:
+    """Points and directions of the lines about which a circle through a place may turn where it is on both shapes: their
+    axes, what two spheres or a sphere and a plane turn about, and across a torus' tube."""
+    for shape, other in ((a, b), (b, a)):
+        if shape.kind in (CYLINDER, CONE, TORUS):
+            yield shape.point, shape.axis
+        if shape.kind == SPHERE and other.kind == PLANE:
+            yield shape.point, other.axis
+        if shape.kind == TORUS:
+            out = add(place, shape.point, -1)
+            away = unit(add(out, shape.axis, -dot(out, shape.axis)))
+            yield add(shape.point, away, shape.radius), cross(shape.axis, away)
+    if a.kind == b.kind == SPHERE:
+        yield a.point, unit(add(a.point, b.point, -1))
 
 
 def _circle(a: Shape, b: Shape, points: list[Vector], close: float) -> Optional[tuple[Vector, Vector, float]]:
-    """Centre, axis and radius of the circle through points of two shapes that turn about one axis; None where there is
-    none."""
-    turning = sorted((shape for shape in (a, b) if shape.kind != PLANE), key=lambda shape: shape.kind == SPHERE)
-    if not turning:
-        return None
-    axis, foot = _turn_axes(turning[0]), turning[0].point
-    if axis is None:
-        flat = next((shape for shape in (a, b) if shape.kind == PLANE), None)
-        axis = flat.axis if flat is not None else unit(add(a.point, b.point, -1))
-    along = dot(add(points[0], foot, -1), axis)
-    centre = add(foot, axis, along)
-    radius = distance(points[0], centre)
-    if radius <= close or not all(
-            abs(distance(point, centre) - radius) <= close and abs(dot(add(point, centre, -1), axis)) <= close
-            for point in points):
-        return None
-    return centre, axis, radius
+    """Centre, axis and radius of the circle through points of two shapes; None where there is none."""
+    for foot, axis in _axes(a, b, points[len(points) // 2]):
+        centre = add(foot, axis, dot(add(points[0], foot, -1), axis))
+        radius = distance(points[0], centre)
+        if radius > close and all(
+                abs(distance(point, centre) - radius) <= close and abs(dot(add(point, centre, -1), axis)) <= close
+                for point in points):
+            return centre, axis, radius
+    return None
 
 
 def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = None, progress: Report = None) -> Brep:
     """The solid of a closed mesh on a Surface, made of voxels this large (mm), with little left out of it
     (Mesh.from_stock(error=voxel / 50)). NotAnalytic where it is not bounded by planes, cylinders, cones, spheres and tori
-    alone; ValueError for a mesh that is empty or open."""
+    alone, or of too many faces; ValueError for a mesh that is empty or open."""
     if not mesh.triangle_count or not mesh.closed:
         raise ValueError("a solid is made of a closed mesh")
     if any(shell.volume_mm3 <= 0 for shell in mesh.shells()):
-        raise NotAnalytic("there is a hollow inside", 0.0)
+        raise NotAnalytic("there is a hollow inside", None)
     regions = find(mesh, surface, voxel, moves, share(progress, 0, 0.5))
     if regions.unknown:
         x, y, z = regions.unknown[0]
+        percent = min(math.floor(1000 * regions.known_share) / 10, 99.9)
         raise NotAnalytic("%.1f %% of the surface is on planes, cylinders, cones, spheres and tori, but not what is near "
-                          "(%.2f, %.2f, %.2f)" % (100 * regions.known_share, x, y, z), regions.known_share)
-    return _Maker(regions, voxel).make(share(progress, 0.5, 1))
+                          "(%.2f, %.2f, %.2f)" % (percent, x, y, z), regions.known_share)
+    maker = _Maker(regions, voxel)
+    try:
+        return maker.make(share(progress, 0.5, 1))
+    except LookupError:  # borders that do not lead on
+        raise maker.fail("its faces do not hang together") from None

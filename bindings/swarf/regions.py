@@ -3,12 +3,13 @@
 edges and smooth joints are mended."""
 from __future__ import annotations
 
+import bisect
 import math
 from dataclasses import dataclass
 from typing import Optional
 
 from ._native import Mesh, Surface
-from .progress import Report, check, share
+from .progress import TURNS, Report, check, share
 from .shapes import Shape, Vector, add, cross, dot
 
 #: mm; shapes that differ by less are one: what the digits of a program leave open.
@@ -20,6 +21,34 @@ NEAR, NARROW = 0.1, 1.0
 
 #: How often what is left is looked at again.
 ROUNDS = 20
+
+#: Unknown regions that are wider than this, in voxels, are no mistakes about edges: mending would not help.
+WIDE = 4.0
+
+#: Shapes that a solid is made of in some seconds, and that CAD is glad to have.
+SHAPES_MAX = 1000
+
+
+class NotAnalytic(ValueError):
+    """A stock that is not bounded by these faces alone, or whose edges are not found. ``share``: part of the area that
+    lies on such faces; None where that was not measured."""
+
+    def __init__(self, text: str, share: Optional[float]) -> None:
+        super().__init__(text)
+        self.share = share
+
+
+class Ticks:
+    """Progress of loops whose turns take microseconds: asked every some turns; Cancelled."""
+
+    def __init__(self, progress: Report) -> None:
+        self.progress, self.fraction, self.turns = progress, 0.0, 0
+
+    def tick(self) -> None:
+        """One turn."""
+        self.turns += 1
+        if self.turns % TURNS == 0:
+            check(self.progress, self.fraction)
 
 
 @dataclass
@@ -58,7 +87,7 @@ class Regions:
                 loop.append(half)
                 half = self._next(half)
             if half != first:
-                raise ValueError("a mesh whose edges do not close")
+                raise NotAnalytic("the edges of a face do not close", self.known_share)
             found[borders[first][0]].append(loop)
         return found
 
@@ -83,16 +112,19 @@ def _area(vertices: list[Vector], triangle: list[int]) -> Vector:
 class _Parts:
     """Shapes of triangles, gathered and mended."""
 
-    def __init__(self, mesh: Mesh, rows: list[list[float]], voxel: float) -> None:
-        self.voxel = voxel
+    def __init__(self, mesh: Mesh, rows: list[list[float]], voxel: float, ticks: Ticks) -> None:
+        self.voxel, self.ticks = voxel, ticks
         self.vertices: list[Vector] = [(x, y, z) for x, y, z in mesh.vertices.tolist()]
         self.triangles: list[list[int]] = mesh.triangles.tolist()
         self.across = {}
         for number, (a, b, c) in enumerate(self.triangles):
             self.across[a, b] = self.across[b, c] = self.across[c, a] = number
+            ticks.tick()
         self.area = [math.hypot(*_area(self.vertices, triangle)) / 2 for triangle in self.triangles]
         lo, hi = mesh.bounding_box
         self.directions = SAME / max(math.dist(lo, hi), SAME)
+        self.probe = add(lo, (0.37 * (hi[0] - lo[0]), 0.41 * (hi[1] - lo[1]), 0.43 * (hi[2] - lo[2])))
+        self.by_distance: list[tuple[float, int]] = []  # of the probe from each shape; and the shape
         self.shapes: list[Optional[Shape]] = [None]  # the first is what is not known
         numbers: dict[tuple[float, ...], int] = {}
         self.shape_of = []
@@ -100,13 +132,23 @@ class _Parts:
             key = tuple(row)
             if key not in numbers:
                 numbers[key] = self._number(Shape.of_row(row)) if row[0] else 0
+                if len(self.shapes) > SHAPES_MAX + 1:
+                    known = sum(area for area, row in zip(self.area, rows) if row[0])
+                    raise NotAnalytic("it has faces of more than %d shapes" % SHAPES_MAX, known / sum(self.area))
             self.shape_of.append(numbers[key])
+            ticks.tick()
 
     def _number(self, shape: Shape) -> int:
-        for number, other in enumerate(self.shapes):
-            if other is not None and other.is_same(shape, SAME, self.directions):
+        """Its number; the same as that of a shape that it hardly differs from: those are as far from the probe."""
+        away = abs(shape.see(self.probe)[0])
+        begin = bisect.bisect_left(self.by_distance, (away - 8 * SAME, 0))
+        end = bisect.bisect_left(self.by_distance, (away + 8 * SAME, 0))
+        for number in sorted(number for _, number in self.by_distance[begin:end]):
+            if self.shapes[number].is_same(shape, SAME, self.directions):
                 return number
+            self.ticks.tick()
         self.shapes.append(shape)
+        bisect.insort(self.by_distance, (away, len(self.shapes) - 1))
         return len(self.shapes) - 1
 
     def components(self) -> tuple[list[int], list[list[int]]]:
@@ -118,6 +160,7 @@ class _Parts:
             region_of[first] = len(members)
             found, at = [first], 0
             while at < len(found):
+                self.ticks.tick()
                 a, b, c = self.triangles[found[at]]
                 for edge in ((b, a), (c, b), (a, c)):
                     other = self.across[edge]
@@ -144,19 +187,33 @@ class _Parts:
                 return True
         return False
 
+    def border(self, region: int, region_of: list[int], triangles: list[int]) -> dict[int, float]:
+        """Length of a region's border by the shape beyond it."""
+        border: dict[int, float] = {}
+        own = self.shape_of[triangles[0]]
+        for triangle in triangles:
+            self.ticks.tick()
+            a, b, c = self.triangles[triangle]
+            for u, v in ((a, b), (b, c), (c, a)):
+                other = self.shape_of[self.across[v, u]]
+                if region_of[self.across[v, u]] != region and other != own:
+                    border[other] = border.get(other, 0.0) + math.dist(self.vertices[u], self.vertices[v])
+        return border
+
+    def hopeless(self) -> bool:
+        """Whether there is an unknown region that is too wide for mend()."""
+        region_of, members = self.components()
+        return any(
+            2 * sum(self.area[triangle] for triangle in triangles)
+            >= WIDE * self.voxel * sum(self.border(region, region_of, triangles).values())
+            for region, triangles in enumerate(members) if self.shape_of[triangles[0]] == 0)
+
     def mend(self) -> bool:
         """Narrow regions that a neighbour's shape fits as well become its; whether there was any."""
         region_of, members = self.components()
         changed = False
         for region in sorted(range(len(members)), key=lambda one: sum(self.area[t] for t in members[one])):
-            border: dict[int, float] = {}
-            own = self.shape_of[members[region][0]]
-            for triangle in members[region]:
-                a, b, c = self.triangles[triangle]
-                for u, v in ((a, b), (b, c), (c, a)):
-                    other = self.shape_of[self.across[v, u]]
-                    if region_of[self.across[v, u]] != region and other != own:
-                        border[other] = border.get(other, 0.0) + math.dist(self.vertices[u], self.vertices[v])
+            border = self.border(region, region_of, members[region])
             area = sum(self.area[triangle] for triangle in members[region])
             if border and 2 * area < NARROW * self.voxel * sum(border.values()):
                 changed |= self.give(members[region], border)
@@ -166,10 +223,12 @@ class _Parts:
         """Where two regions meet twice at a vertex, the smaller triangles there go over; whether there was any."""
         ways: dict[int, list[tuple[int, int]]] = {}
         for (u, v), triangle in self.across.items():
+            self.ticks.tick()
             if self.shape_of[triangle] != self.shape_of[self.across[v, u]]:
                 ways.setdefault(u, []).append((u, v))
         changed = False
         for vertex in sorted(ways):
+            self.ticks.tick()
             fans = self._fans(vertex, ways[vertex])
             if len(fans) < 4 or len({self.shape_of[fan[0]] for fan in fans}) == len(fans):
                 continue
@@ -215,12 +274,15 @@ def _shells(region_of: list[int], across: dict[tuple[int, int], int], count: int
 
 
 def find(mesh: Mesh, surface: Surface, voxel: float, moves: Optional[int] = None, progress: Report = None) -> Regions:
-    """The regions of a closed mesh on a Surface."""
+    """The regions of a closed mesh on a Surface. NotAnalytic where they are of too many shapes."""
     rows = mesh.faces(surface, moves=moves, progress=share(progress, 0, 0.5)).tolist()
-    parts = _Parts(mesh, rows, voxel)
+    ticks = Ticks(progress)
+    ticks.fraction = 0.5
+    parts = _Parts(mesh, rows, voxel, ticks)
     whole = sum(parts.area)
-    for number in range(ROUNDS):
-        check(progress, 0.5 + 0.5 * number / ROUNDS)
+    for number in range(0 if parts.hopeless() else ROUNDS):
+        ticks.fraction = 0.5 + 0.5 * number / ROUNDS
+        check(progress, ticks.fraction)
         if not (parts.mend() | parts.unpinch()):
             break
     region_of, members = parts.components()
@@ -236,6 +298,7 @@ def find(mesh: Mesh, surface: Surface, voxel: float, moves: Optional[int] = None
             continue
         way = 0.0
         for triangle in triangles:
+            ticks.tick()
             a, b, c = (parts.vertices[corner] for corner in parts.triangles[triangle])
             middle = ((a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3)
             way += dot(shape.see(middle)[1], _area(parts.vertices, parts.triangles[triangle]))

@@ -3,6 +3,7 @@
 import math
 import random
 import re
+import time
 
 import pytest
 
@@ -72,6 +73,9 @@ def test_where_shapes_meet():
     ("flat:d=6,l=20", ((10, 20, 5), (10, 20, -4), (20, 20, -4), ((20, 30, -4), (20, 25, -4))), {PLANE: 9, CYLINDER: 4}, 30),
     ("flat:d=6,l=20", ((-5, 20, 5), (-5, 20, -4), (65, 20, -4), (65, 20, 5), (30, -5, 5), (30, -5, -2), (30, 45, -2)),
      {PLANE: 18}, 48),  # two grooves that cross
+    # quarters of circles between the tubes of a tool with rounded corners
+    ("bull:d=6,r=1,l=20", ((10, 20, 5), (10, 20, -4), (40, 20, -4)), {PLANE: 9, CYLINDER: 4, TORUS: 2}, 32),
+    ("bull:d=6,r=1,l=20", ((10, 10, 5), (10, 10, -4), (40, 10, -4), (40, 30, -4)), {PLANE: 11, CYLINDER: 7, TORUS: 3}, 47),
 ])
 def test_solids(tool, moves, faces, edges, tmp_path):
     mesh, surface = cut(tool, *moves)
@@ -131,6 +135,64 @@ def test_what_is_no_such_solid(tmp_path):
     made.faces[0].loops[0].pop()
     with pytest.raises(brep.NotAnalytic, match="do not close"):
         brep._Maker(regions.find(mesh, surface, VOXEL), VOXEL).check(made)
+
+
+def test_what_is_hollow_has_no_share():
+    mesh, surface = cut("flat:d=6,l=20", (10, 20, 5), (10, 20, -4))
+    count, vertices, triangles = mesh.vertex_count, mesh.vertices.tolist(), mesh.triangles.tolist()
+    inside = [(30 + 0.1 * x, 15 + 0.1 * y, -5 + 0.1 * z) for x, y, z in vertices]
+    hollow = swarf.Mesh(vertices + inside, triangles + [(a + count, c + count, b + count) for a, b, c in triangles])
+    with pytest.raises(brep.NotAnalytic, match="hollow") as told:
+        brep.make(hollow, surface, VOXEL)
+    assert told.value.share is None
+
+
+def test_edges_that_turn_back_end():
+    """A ball that turns back into its own slot: a curve whose points once went to and fro for ever."""
+    mesh, surface = cut("ball:d=6,l=20", (23.5, 11, 5), (23.5, 11, -4), (23.5, 19.5, -4), ((28, 15, -4), (28, 19.5, -4)))
+    with pytest.raises(brep.NotAnalytic, match="an edge is no smooth curve"):
+        brep.make(mesh, surface, VOXEL)
+
+
+def raster(rows, columns):
+    """(mesh, surface) of a relief: a ball in lines up and down, each a shape of its own."""
+    moves = [(2, 2, 5)]
+    for row in range(rows):
+        y = 2 + 36 * row / (rows - 1)
+        xs = [2 + 56 * k / (columns - 1) for k in range(columns)][::-1 if row % 2 else 1]
+        moves += [(x, y, -3 + math.sin(x / 4) * math.cos(y / 5)) for x in xs]
+    return cut("ball:d=6,l=20", *moves)
+
+
+def test_too_many_shapes():
+    """They are refused before they are compared, and what is under way ends soon after it is cancelled."""
+    mesh, surface = raster(24, 48)
+    with pytest.raises(brep.NotAnalytic, match="more than 1000 shapes") as told:
+        brep.make(mesh, surface, VOXEL)
+    assert 0.9 < told.value.share <= 1
+    mesh, surface = raster(12, 24)
+    for wanted in (0.0, 0.24, 0.25):
+        last = 0.0
+
+        def progress(done):
+            nonlocal last
+            last = last or (done >= wanted and time.monotonic())
+            return done >= wanted
+
+        with pytest.raises(swarf.Cancelled):
+            brep.make(mesh, surface, VOXEL, progress=progress)
+        assert time.monotonic() - last < 0.5
+
+
+def test_progress_is_told_all_along(monkeypatch):
+    """Searching for shapes, for regions, for corners and along edges: some thousand turns at most between two reports."""
+    mesh, surface = cut("bull:d=6,r=1,l=20", (10, 10, 5), (10, 10, -4), (40, 10, -4), (40, 30, -4))
+    monkeypatch.setattr(regions, "TURNS", 16)
+    told = []
+    brep.make(mesh, surface, VOXEL, progress=told.append)
+    assert told == sorted(told)
+    assert told.count(0.25) > mesh.triangle_count / 16 and told.count(0.5) > 10  # per triangle; per corner
+    assert len([done for done in told if done > 0.5]) > 200  # per point of an edge
 
 
 def test_cancelled():

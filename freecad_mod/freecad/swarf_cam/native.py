@@ -247,14 +247,14 @@ def _exact(data, stock_file, progress=None):
 # A solid is made of a mesh with an error of so many voxels: few triangles where it is flat, and edges that wander little.
 SOLID_ERROR_VOXELS = 0.02
 
-# Triangles that a solid is made of in some seconds.
+# Triangles whose faces are told in a minute or so.
 SOLID_TRIANGLES_MAX = 500000
 
 
 @dataclass
 class Analytic:
-    """A STEP file with faces as they were cut. share: part of the area on planes, cylinders, cones, spheres and tori;
-    reason: why there is no file, None when there is; volume_mm3 and area_mm2 of the mesh it was made of, which is within
+    """A STEP file with faces as they were cut. share: part of the area on planes, cylinders, cones, spheres and tori,
+    None where it was not measured; reason: why there is no file, None when there is; volume_mm3 and area_mm2 of the mesh it was made of, which is within
     error_mm; faces: their number."""
 
     share: float
@@ -280,11 +280,14 @@ def export_analytic(data, stock_file, path, largest=False, progress=None):
     if largest:
         mesh = parts.largest(mesh)
     if mesh.triangle_count > SOLID_TRIANGLES_MAX:
-        return Analytic(0.0, "it takes more than %d triangles to tell its faces" % SOLID_TRIANGLES_MAX)
+        return Analytic(None, "its mesh has %d triangles, and faces are told of %d at most"
+                        % (mesh.triangle_count, SOLID_TRIANGLES_MAX))
     try:
         made = brep.make(mesh, surface, left.voxel, progress=share(0.7, 1))
     except brep.NotAnalytic as problem:
         return Analytic(problem.share, str(problem))
+    except ValueError as problem:  # a piece that is no closed mesh: facets show what there is
+        return Analytic(None, str(problem))
     step.write(made, path)
     return Analytic(1.0, None, mesh.volume, mesh.area, error, len(made.faces))
 

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The stock as a model: files by suffix, shapes, sections, estimates, and what cannot be."""
 
+import importlib
 import math
 import os
 import tempfile
 import unittest
+from unittest import mock
 
 import FreeCAD
 import Mesh
@@ -71,6 +73,26 @@ class TestModel(unittest.TestCase):
         finally:
             model.SHAPE_TRIANGLES_MAX = limit
 
+    def test_facets_are_made_where_they_are_needed(self):
+        """What is analytic has no second mesh, and what was not measured has no share."""
+        counts, export, limit = [], native.export, native.SOLID_TRIANGLES_MAX
+        with mock.patch.object(native, "export", lambda *args, **kw: counts.append(export(*args, **kw)) or counts[-1]), \
+                mock.patch.object(model.FreeCAD, "Console", mock.Mock(wraps=FreeCAD.Console)) as console:
+            model.export(self.obj, self.path("part.step"))
+            self.assertEqual(counts, [])
+            native.SOLID_TRIANGLES_MAX = 4
+            try:
+                model.export(self.obj, self.path("part.step"))
+            finally:
+                native.SOLID_TRIANGLES_MAX = limit
+            self.assertEqual(counts, [self.obj.Mesh.CountFacets])
+            with mock.patch.object(model, "_doubt", lambda *_: "in doubt"):  # told in the end: its mesh is made then
+                model.export(self.obj, self.path("doubt.step"))
+            self.assertEqual(counts, 2 * [self.obj.Mesh.CountFacets])
+            told = [call.args[0] for call in console.PrintWarning.call_args_list]
+        self.assertEqual(told, ["Swarf: the shape is made of flat facets: its mesh has 28 triangles, and faces are told of 4 at"
+                                " most\n", "Swarf: the shape is made of flat facets: in doubt\n"])
+
     def test_what_freecad_doubts_is_not_taken(self):
         made = native.Analytic(1.0, None, 8.0, 24.0, 0.01, 6)
         self.assertIsNone(model._doubt(Part.makeBox(2, 2, 2), made))
@@ -114,6 +136,31 @@ class TestModel(unittest.TestCase):
             curves = [type(edge.Curve).__name__ for edge in shape.Edges]
             self.assertLessEqual(curves.count("BSplineCurve"), 2)  # FreeCAD's own seams of the hole and its cone
             self.assertEqual(set(curves) - {"BSplineCurve"}, {"Line", "Circle"})
+
+    def test_slots_with_rounded_edges(self):
+        """A tool with rounded corners: FreeCAD reads tori and the quarters of circles beside them as sound solids."""
+        swarf = native.load()
+        brep, step = (importlib.import_module("%s.%s" % (swarf.__name__, name)) for name in ("brep", "step"))
+        cross = 6 * 4 - 2 * (1 - math.pi / 4)
+        first = math.pi * 9 * 3 + math.pi * (4 + math.pi + 2 / 3)
+        for places, removed in (((10, 10), (40, 10)), first + 30 * cross), (((10, 10), (40, 10), (40, 30)), None), \
+                (((10, 10), (40, 10), (40, 14), (10, 14), (10, 18), (40, 18)), None):
+            program = swarf.Program(start=(10, 10, 5))
+            program.add_operation("cut")
+            program.set_section(tool=1)
+            for place in ((10, 10, -4), *((x, y, -4) for x, y in places[1:])):
+                program.add_line(place, feed_mm_min=100)
+            job = swarf.Job(name="cut", program=program, tools={1: swarf.Cutter("bull:d=6,r=1,l=20")},
+                            stock={"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)})
+            made = swarf.simulate(job, voxel=0.4, compare=False)
+            mesh = swarf.Mesh.from_stock(made.stock, 0.008, surface=made.surface)
+            step.write(brep.make(mesh, made.surface, 0.4), self.path("slot.step"))
+            shape = Part.Shape()
+            shape.read(self.path("slot.step"))
+            self.assertTrue(shape.isValid() and len(shape.Solids) == 1 and shape.Solids[0].isClosed())
+            self.assertAlmostEqual(shape.Volume, mesh.volume, delta=0.008 * mesh.area)
+            if removed is not None:
+                self.assertAlmostEqual(shape.Volume, 24000 - removed, delta=1e-3)
 
     def test_a_void_stays_one(self):
         mesh = Mesh.createBox(20.0, 20.0, 20.0)

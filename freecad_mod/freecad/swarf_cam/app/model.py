@@ -64,6 +64,8 @@ class Export:
         self.suffix = suffix_of(path)
         self.stock_file, self.up_to_date = obj.Stock, obj.UpToDate
         self._folder = None
+        error = options.get("error_mm")  # as fine as the mesh in the document: no fewer triangles, and known before
+        self._least = obj.Mesh.CountFacets if error is None or error <= default_error(obj) else 0
         self.analytic = None  # native.Analytic of a shape: what share of its faces is as they were cut
 
     def run(self, progress=None):
@@ -78,14 +80,19 @@ class Export:
         return native.export(self.data, self.stock_file, self.path, progress=progress, **self.options)
 
     def _run_shape(self, progress):
-        """The shape with faces as they were cut where that can be, and its mesh: for where it cannot."""
+        """The shape with faces as they were cut where that can be, else its mesh."""
         self._folder = tempfile.TemporaryDirectory(prefix="swarf-")
         half = [progress and (lambda done, begin=begin: progress(begin + 0.5 * done)) for begin in (0, 0.5)]
         self.analytic = native.export_analytic(self.data, self.stock_file, self._file("stock.step"),
                                                self.options.get("largest", False), half[0])
-        count = native.export(self.data, self.stock_file, self._file("stock.stl"), progress=half[1], **self.options)
-        if self.analytic.reason is not None:
-            _check_count(count)  # here nobody waits for it
+        return 0 if self.analytic.reason is None else self._run_facets(half[1])
+
+    def _run_facets(self, progress=None):
+        """The mesh that a shape is made of; JobError where that is too large, told before it is made where it is known."""
+        if not self.options.get("largest") and not self.options.get("budget"):
+            _check_count(self._least)
+        count = native.export(self.data, self.stock_file, self._file("stock.stl"), progress=progress, **self.options)
+        _check_count(count)  # here nobody waits for it
         return count
 
     def _file(self, name):
@@ -127,9 +134,14 @@ class Export:
                     "Swarf", "Swarf: the shape has {0} faces as they were cut: planes, cylinders, cones, spheres, tori\n"
                 ).format(self.analytic.faces))
                 return shape
-        FreeCAD.Console.PrintWarning(translate(
-            "Swarf", "Swarf: the shape is made of flat facets; {0:.1f} % of its surface is planes, cylinders, cones, spheres"
-            " and tori. Not all of it: {1}\n").format(100 * self.analytic.share, self.analytic.reason))
+            self._run_facets()  # a rare one, and known only here
+        share, reason = self.analytic.share, self.analytic.reason
+        if share is None or share >= 1:
+            FreeCAD.Console.PrintWarning(translate("Swarf", "Swarf: the shape is made of flat facets: {0}\n").format(reason))
+        else:
+            FreeCAD.Console.PrintWarning(translate(
+                "Swarf", "Swarf: the shape is made of flat facets; {0:.1f} % of its surface is planes, cylinders, cones, spheres"
+                " and tori. Not all of it: {1}\n").format(math.floor(1000 * share) / 10, reason))
         return shape_of(Mesh.Mesh(self._file("stock.stl")))
 
 
@@ -204,7 +216,7 @@ def add_shape(obj):
 
 
 def _made_shape(obj):
-    """The shape of an export; None where there can be none."""
+    """The shape of an export; None where there can be none: the job has changed since, or its mesh is too large."""
     with tempfile.TemporaryDirectory(prefix="swarf-") as folder:
         path = os.path.join(folder, "stock.brep")
         try:

@@ -731,6 +731,12 @@
 </translation>
         </message>
         <message>
+            <source>Swarf: the shape is made of flat facets: {0}
+</source>
+            <translation>Swarf: der Körper besteht aus ebenen Facetten: {0}
+</translation>
+        </message>
+        <message>
             <source>Swarf: the shape is made of flat facets; {0:.1f} % of its surface is planes, cylinders, cones, spheres and tori. Not all of it: {1}
 </source>
             <translation>Swarf: der Körper besteht aus ebenen Facetten; {0:.1f} % seiner Oberfläche sind Ebenen, Zylinder, Kegel, Kugeln und Tori. Nicht alles: {1}
