@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-import os
-import tempfile
 from typing import Iterable
 
+from . import report
 from .brep import CONE, CYLINDER, PLANE, SPHERE, Brep, Edge, Face
 from .shapes import Vector, add, cross, distance, dot, unit
 
@@ -22,6 +21,16 @@ def _number(value: float) -> str:
 
 def _list(words: Iterable[str]) -> str:
     return "(" + ",".join(words) + ")"
+
+
+def _string(text: str) -> str:
+    """A string as STEP wants it, without its quotes: printable ASCII, the rest as numbers of characters."""
+    def letter(one: str) -> str:
+        if " " <= one <= "~":
+            return {"'": "''", "\\": "\\\\"}.get(one, one)
+        return ("\\X2\\%04X\\X0\\" if ord(one) < 0x10000 else "\\X4\\%08X\\X0\\") % ord(one)
+
+    return "".join(map(letter, text))
 
 
 def _along(edge: Edge, brep: Brep) -> list[Vector]:
@@ -118,8 +127,10 @@ class _Writer:
         if shape.kind == SPHERE:
             return self.put("SPHERICAL_SURFACE('',%s,%s)" % (
                 self.placement(shape.point, _poles(face, edges, brep), towards), _number(shape.radius)))
-        return self.put("TOROIDAL_SURFACE('',%s,%s,%s)" % (
-            self.placement(shape.point, shape.axis, towards), _number(shape.radius), _number(shape.second)))
+        spindle = shape.second > shape.radius  # a tube that crosses the axis: what is outside of the crossing
+        return self.put("%sTOROIDAL_SURFACE('',%s,%s,%s%s)" % (
+            "DEGENERATE_" if spindle else "", self.placement(shape.point, shape.axis, towards), _number(shape.radius),
+            _number(shape.second), ",.T." if spindle else ""))
 
     def solid(self, brep: Brep, faces: list[int], vertices: list[str], curves: list[str]) -> str:
         made = []
@@ -142,7 +153,7 @@ def text(brep: Brep, name: str = "stock") -> str:
     curves = [out.put("EDGE_CURVE('',%s,%s,%s,.T.)" % (vertices[edge.start], vertices[edge.end], out.curve(edge, brep)))
               for edge in brep.edges]
     solids = [out.solid(brep, faces, vertices, curves) for faces in brep.shells]
-    word = name.encode("ascii", "replace").decode().replace("'", "''").replace("\\", "/")
+    word = _string(name)
     context = out.put("APPLICATION_CONTEXT('automotive design')")
     out.put("APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,%s)" % context)
     product = out.put("PRODUCT('%s','%s','',(%s))" % (
@@ -171,12 +182,4 @@ def text(brep: Brep, name: str = "stock") -> str:
 
 def write(brep: Brep, path: str, name: str = "stock") -> None:
     """Write a Brep; beside the target and renamed. OSError."""
-    folder, base = os.path.split(os.path.abspath(path))
-    handle, beside = tempfile.mkstemp(dir=folder, prefix=base)
-    try:
-        with os.fdopen(handle, "w", encoding="ascii") as file:
-            file.write(text(brep, name))
-        os.replace(beside, path)
-    except BaseException:
-        os.unlink(beside)
-        raise
+    report.write_text(text(brep, name), path)

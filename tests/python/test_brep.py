@@ -117,7 +117,25 @@ def test_what_crosses_along_curves():
     assert "B_SPLINE_CURVE_WITH_KNOTS" in step.text(made)
 
 
-def test_what_is_no_such_solid(tmp_path):
+def test_step_files(tmp_path):
+    """Ordinary files; names of any letters; tubes that cross their axis by the name that STEP has for them."""
+    assert step._string("it's 5 \\ Ä\n\U0001F600") == "it''s 5 \\\\ \\X2\\00C4\\X0\\\\X2\\000A\\X0\\\\X4\\0001F600\\X0\\"
+    made = brep.make(*cut("bull:d=8,r=1,l=20", (30, 20, 5), (30, 20, -4)), VOXEL)
+    step.write(made, tmp_path / "part.step", "Teil\nÄ")
+    (tmp_path / "other").write_text("")
+    assert (tmp_path / "part.step").stat().st_mode == (tmp_path / "other").stat().st_mode
+    text = (tmp_path / "part.step").read_bytes().decode("ascii")
+    assert r"PRODUCT('Teil\X2\000A\X0\\X2\00C4\X0\'," in text
+    assert re.search(r"=TOROIDAL_SURFACE\('',#\d+,[\d.]+,[\d.]+\)", text)
+    with pytest.raises(OSError, match="such.step: cannot write"):
+        step.write(made, tmp_path / "no" / "such.step")
+    for face in made.faces:
+        if face.shape.kind == TORUS:
+            face.shape = Shape(TORUS, face.shape.point, face.shape.axis, 1.0, 3.0)
+    assert re.search(r"=DEGENERATE_TOROIDAL_SURFACE\('',#\d+,1\.0,3\.0,\.T\.\)", step.text(made))
+
+
+def test_what_is_no_such_solid():
     with pytest.raises(brep.NotAnalytic, match="% of the surface is on planes") as told:
         brep.make(*cut("flat:d=6,l=20", (10, 20, 0), (50, 20, -8)), VOXEL)  # the rim of a disc on a slope
     assert 0.9 < told.value.share < 1
@@ -130,8 +148,6 @@ def test_what_is_no_such_solid(tmp_path):
         with pytest.raises(ValueError, match="closed"):
             brep.make(open_mesh, surface, VOXEL)
     made = brep.make(mesh, surface, VOXEL)
-    with pytest.raises(OSError):
-        step.write(made, tmp_path / "no" / "such.step")
     made.faces[0].loops[0].pop()
     with pytest.raises(brep.NotAnalytic, match="do not close"):
         brep._Maker(regions.find(mesh, surface, VOXEL), VOXEL).check(made)
