@@ -32,6 +32,9 @@ CLOSE = 1e-6
 #: mm; what curves between others than these may be off.
 CURVE = 1e-5
 
+#: mm; what corners in which faces touch may be off.
+UNSETTLED = 1e-3
+
 #: Cosine of the angle from which on faces cross and do not touch, as far as the mesh can tell.
 CROSSING = 0.8
 
@@ -206,6 +209,31 @@ class _Maker:
                 corners.append(place)
         return corners
 
+    def settle_corners(self, corners: list[Vector]) -> None:
+        """Where three faces touch in a corner, their equations leave it open by the root of what numbers are exact to: it
+        goes to the end of the circle along which two of them touch."""
+        for chain in self.chains:
+            if not chain.touching or chain.closed or self.is_point(chain):
+                continue
+            ends = [self.corner_of[chain.vertices[0]], self.corner_of[chain.vertices[-1]]]
+            try:
+                points = self.samples(chain, corners[ends[0]], corners[ends[1]])
+            except NotAnalytic:
+                continue  # told when its turn has come
+            shapes, close = (self.shape(chain.left), self.shape(chain.right)), CLOSE + 2 * self.left
+            if len(points) < 4 or _is_line(points, close) or _circle(*shapes, points, close):
+                continue
+            circle = _circle(*shapes, points[1:-1], close)
+            for corner in ends if circle is not None else ():
+                centre, axis, radius = circle
+                out = add(corners[corner], centre, -1)
+                place = add(centre, unit(add(out, axis, -dot(out, axis))), radius)
+                beside = {region for other in self.chains for region in (other.left, other.right)
+                          if corner in (self.corner_of.get(other.vertices[0]), self.corner_of.get(other.vertices[-1]))}
+                if distance(place, corners[corner]) < UNSETTLED and all(
+                        abs(self.shape(region).see(place)[0]) <= close for region in beside):
+                    corners[corner] = place
+
     def is_point(self, chain: _Chain) -> bool:
         """Whether a chain has no length: where four faces meet in a point, the mesh has two corners beside each other."""
         start, end = chain.vertices[0], chain.vertices[-1]
@@ -282,6 +310,7 @@ class _Maker:
             check(progress, 0.0)
             self.tell_touching(chain)
         corners = self.place_corners_and_closed()
+        self.settle_corners(corners)
         edges: list[Edge] = []
         edge_of: dict[int, int] = {}
         for number, chain in enumerate(self.chains):

@@ -144,12 +144,16 @@ class TestModel(unittest.TestCase):
         cross = 6 * 4 - 2 * (1 - math.pi / 4)
         first = math.pi * 9 * 3 + math.pi * (4 + math.pi + 2 / 3)
         for places, removed in (((10, 10), (40, 10)), first + 30 * cross), (((10, 10), (40, 10), (40, 30)), None), \
-                (((10, 10), (40, 10), (40, 14), (10, 14), (10, 18), (40, 18)), None):
-            program = swarf.Program(start=(10, 10, 5))
+                (((10, 10), (40, 10), (40, 14), (10, 14), (10, 18), (40, 18)), None), \
+                (((10, 20), (30, 20), (35, 25), (35, 35)), first + (30 + 2.5 * math.pi) * cross):
+            program = swarf.Program(start=(*places[0], 5))
             program.add_operation("cut")
             program.set_section(tool=1)
-            for place in ((10, 10, -4), *((x, y, -4) for x, y in places[1:])):
-                program.add_line(place, feed_mm_min=100)
+            for place in ((x, y, -4) for x, y in places):
+                if place[:2] == (35, 25):
+                    program.add_arc(place, (30, 25, -4), ccw=True, feed_mm_min=100)
+                else:
+                    program.add_line(place, feed_mm_min=100)
             job = swarf.Job(name="cut", program=program, tools={1: swarf.Cutter("bull:d=6,r=1,l=20")},
                             stock={"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)})
             made = swarf.simulate(job, voxel=0.4, compare=False)
