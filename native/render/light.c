@@ -3,7 +3,8 @@
  *
  * The sky is looked for from one square of each block of 2x2, with 16 rays over the half space above the surface, more
  * of them where they count more (cosine weighting). Blocks turn the same pattern by one of 4x4 angles; a square then
- * takes the mean of the 4x4 blocks around it that lie on its own face, which has each angle once.
+ * takes the mean of the 4x4 blocks around it that lie on its own face, which has each angle once. Right beside a wall a
+ * ray may start in the rounding of the voxels, which would look like open sky: such blocks have no say.
  */
 #include "base/parallel.h"
 #include "base/status.h"
@@ -24,7 +25,7 @@ static const double golden_angle = 2.39996322972865332;
 typedef struct sky_work {
     swarf_canvas *canvas;
     int32_t across, down; /* blocks */
-    float *open;          /* per block, negative: no surface */
+    float *open;          /* per block, negative: not known */
     double pattern[PATTERN * PATTERN][SWARF_PACKET][3];
 } sky_work;
 
@@ -90,7 +91,7 @@ static swarf_status look_up_row(void *context, size_t row)
     for (int32_t bx = 0; bx < w->across;) {
         swarf_rays rays[SWARF_GROUP];
         int32_t block[SWARF_GROUP];
-        unsigned blocked[SWARF_GROUP];
+        unsigned blocked[SWARF_GROUP], inside[SWARF_GROUP];
         int count = 0;
         for (; bx < w->across && count < SWARF_GROUP; bx++) {
             const swarf_sight *sight = &c->middle[swarf_canvas_at(c, bx * BLOCK, (int32_t)row * BLOCK)];
@@ -99,8 +100,9 @@ static swarf_status look_up_row(void *context, size_t row)
             look_up(w, sight, (int)(row % PATTERN) * PATTERN + bx % PATTERN, &rays[count]);
             block[count++] = bx;
         }
-        swarf_look_blocked(&c->look, rays, blocked, count);
-        for (int i = 0; i < count; i++) open[block[i]] = openness(w, &rays[i], blocked[i]);
+        swarf_look_blocked(&c->look, rays, blocked, inside, count);
+        for (int i = 0; i < count; i++)
+            if (!inside[i]) open[block[i]] = openness(w, &rays[i], blocked[i]);
     }
     return SWARF_OK;
 }
@@ -162,10 +164,10 @@ static swarf_status shadow_row(void *context, size_t row)
     memset(sun, 255, (size_t)c->width);
     for (int32_t x = 0; x < c->width; x += SWARF_GROUP * SWARF_PACKET) {
         swarf_rays rays[SWARF_GROUP];
-        unsigned blocked[SWARF_GROUP];
+        unsigned blocked[SWARF_GROUP], inside[SWARF_GROUP];
         for (int32_t i = 0; i < SWARF_GROUP; i++)
             look_at_light(c, &sight[x] + i * SWARF_PACKET, c->width - x - i * SWARF_PACKET, &rays[i]);
-        swarf_look_blocked(&c->look, rays, blocked, SWARF_GROUP);
+        swarf_look_blocked(&c->look, rays, blocked, inside, SWARF_GROUP);
         for (int32_t i = 0; i < SWARF_GROUP; i++)
             for (unsigned left = blocked[i]; left; left &= left - 1)
                 sun[x + i * SWARF_PACKET + __builtin_ctz(left)] = 0;

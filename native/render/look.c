@@ -229,11 +229,10 @@ void swarf_look_trace(const swarf_look *look, const swarf_places places[], int c
     swarf_scene_trace(look->scene, rays, inside, count);
 }
 
-void swarf_look_blocked(const swarf_look *look, swarf_rays rays[], unsigned blocked[], int count)
+void swarf_look_blocked(const swarf_look *look, swarf_rays rays[], unsigned blocked[], unsigned inside[], int count)
 {
     double skipped[SWARF_PACKET];
     int through[SWARF_PACKET] = {0};
-    unsigned inside[SWARF_GROUP];
     const swarf_fixtures *fixtures = swarf_scene_fixtures(look->scene);
     for (int i = 0; look->section_count && i < count; i++) cut(look, &rays[i], skipped, through);
     swarf_scene_trace(look->scene, rays, inside, count);

@@ -52,8 +52,8 @@ void swarf_look_through(const swarf_look *look, const swarf_places places[], int
 void swarf_look_trace(const swarf_look *look, const swarf_places places[], int count, swarf_rays rays[]);
 
 /** Whether the active rays of `count` <= SWARF_GROUP packets, which start at surfaces, meet something within their
- *  reach: bits of them in blocked[i]. */
-void swarf_look_blocked(const swarf_look *look, swarf_rays rays[], unsigned blocked[], int count);
+ *  reach: bits of them in blocked[i]; of those that start in material, and see nothing of the stock, in inside[i]. */
+void swarf_look_blocked(const swarf_look *look, swarf_rays rays[], unsigned blocked[], unsigned inside[], int count);
 
 /** Edge (mm) of a grid square at the depth of a sight. */
 double swarf_look_footprint(const swarf_look *look, const swarf_sight *sight);

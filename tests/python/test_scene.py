@@ -201,6 +201,25 @@ def test_what_is_shown_stays_while_a_picture_is_made():
     assert bytes(scene.render(camera, 200, 150, samples=2).rgba) == calm
 
 
+def test_corners_are_not_lighter_than_the_floor_beside_them():
+    first = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
+    stock = first.copy()
+    program = swarf.Program(start=(10, 20, -4))
+    program.add_operation("slot")
+    program.set_section(tool=1)
+    program.add_line((50, 20, -4), feed_mm_min=100)
+    tools = {1: swarf.Cutter("flat:d=10,l=20")}
+    stock.simulate(program, tools)
+    scene = swarf.Scene(stock)
+    scene.set_surface(first, program, tools)
+    camera = swarf.Camera((30, 20, 50), (30, 20, 0), (0, 1, 0), height=12)
+    rgba = scene.render(camera, 20, 240, samples=1, edges=False).rgba
+    floor = [rgba[y * 20 + 10, 1] for y in range(20, 220)]  # ten pixels a voxel, from wall to wall
+    assert max(floor[:20] + floor[-20:]) < min(floor[60:140]) - 10, floor
+    for side in (floor, floor[::-1]):
+        assert all(side[i] <= side[i + 4] + 2 for i in range(60)), side
+
+
 def test_the_exact_surface_of_the_set_up_before():
     """A slot of the set-up before has sharp edges in the next one, whose voxels round them."""
     first = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
