@@ -117,9 +117,8 @@ static PyMethodDef picture_methods[] = {
      "show_deviation($self, other, tolerance, *, allowance=0.0, progress=None)\n--\n\n"
      "Tint what shows the stock by its deviation from a design Solid, as deviation_colours() does -> the deviations\n"
      "(mm, less what is meant to be left), a read-only (height, width) float64 view, NaN elsewhere. Of a picture of\n"
-     "the design, by that of a Stock from it: on faces to 0.01 voxel up to two voxels, +-inf beyond three. Needs the "
-     "buffers\n"
-     "rgba, position and seen; ValueError without them. rgba is a new view, which write() writes."},
+     "the design, by that of a Stock from it: on faces to 0.01 voxel up to two voxels, +-inf beyond three. Needs the\n"
+     "buffers rgba, position and seen; ValueError without them. rgba is a new view, which write() writes."},
     {"write", picture_write, METH_O, "write($self, path, /)\n--\n\nWrite the colours as PNG. OSError."},
     {NULL, NULL, 0, NULL},
 };

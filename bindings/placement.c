@@ -124,15 +124,16 @@ PyObject *mesh_placed(PyObject *self, PyObject *given)
     return call_end(&call, state, status) ? NULL : mesh_wrap(Py_TYPE(self), handle);
 }
 
-const char mesh_origins_doc[] =
-    "origins($self, surface, *, moves=None, reach=0.0, progress=None)\n--\n\n"
-    "What made each triangle: a read-only (m, 4) int32 view of set-up (0: the Surface's own, 1: the one before ...), "
-    "move\n"
-    "(-1: the first shape, -2: not known), piece of the cutter or the first shape, and kind of face: 0 other, 1 "
-    "plane,\n"
-    "2 cylinder, 3 cone, 4 sphere, 5 torus. Looked for within ``reach`` mm (0: a voxel) of the triangle's middle.";
+/* What a view of the triangles' surface points shows: rows of `columns` numbers, and how they are filled. */
+typedef struct triangle_view {
+    const char *arguments, *format;
+    size_t item_bytes, columns;
+    swarf_status (*fill)(const swarf_surface *surface, const swarf_surface_point *points, size_t rows,
+                         const swarf_progress *progress, void *out);
+} triangle_view;
 
-PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords)
+/* A view with a row for each triangle of the mesh, by the point of a Surface that is nearest to its middle. */
+static PyObject *view_triangles(PyObject *self, PyObject *args, PyObject *keywords, const triangle_view *view)
 {
     static char *names[] = {"surface", "moves", "reach", "progress", NULL};
     module_state *state = state_of(self);
@@ -141,75 +142,76 @@ PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords)
     const swarf_mesh *mesh = ((mesh_object *)self)->handle;
     size_t count;
     double reach = 0;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$OdO:origins", names, state->surface, &given, &moves, &reach,
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, view->arguments, names, state->surface, &given, &moves, &reach,
                                      &progress) ||
         surface_argument(state, given, moves, &surface, &count))
         return NULL;
     const size_t rows = swarf_mesh_triangles(mesh).triangle_count;
     swarf_surface_point *points = PyMem_Calloc(rows + 1, sizeof *points);
-    PyObject *values = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(4 * rows * sizeof(int32_t))), *result = NULL;
+    PyObject *values = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(view->columns * rows * view->item_bytes));
+    PyObject *result = NULL;
     native_call call;
     if (!points) {
         PyErr_NoMemory();
     } else if (values && !call_begin(&call, progress)) {
-        swarf_surface_mark *out = (swarf_surface_mark *)(void *)PyBytes_AsString(values);
+        void *out = PyBytes_AsString(values);
         swarf_status status = swarf_mesh_origins(mesh, surface, count, reach, &call.progress, points);
-        if (!status) status = swarf_surface_marks(surface, points, rows, &call.progress, out);
+        if (!status) status = view->fill(surface, points, rows, &call.progress, out);
         if (!call_end(&call, state, status))
-            result = buffer_view(state, values, out, "i", sizeof(int32_t), rows, 4, NULL);
+            result = buffer_view(state, values, out, view->format, view->item_bytes, rows, view->columns, NULL);
     }
     PyMem_Free(points);
     Py_XDECREF(values);
     return result;
 }
 
+const char mesh_origins_doc[] =
+    "origins($self, surface, *, moves=None, reach=0.0, progress=None)\n--\n\n"
+    "What made each triangle: a read-only (m, 4) int32 view of set-up (0: the Surface's own, 1: the one before\n"
+    "...), move (-1: the first shape, -2: not known), piece of the cutter or the first shape, and kind of face:\n"
+    "0 other, 1 plane, 2 cylinder, 3 cone, 4 sphere, 5 torus. Looked for within ``reach`` mm (0: a voxel) of the\n"
+    "triangle's middle.";
+
+static swarf_status fill_origins(const swarf_surface *surface, const swarf_surface_point *points, size_t rows,
+                                 const swarf_progress *progress, void *out)
+{
+    return swarf_surface_marks(surface, points, rows, progress, out);
+}
+
+PyObject *mesh_origins(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static const triangle_view view = {"O!|$OdO:origins", "i", sizeof(int32_t), 4, fill_origins};
+    return view_triangles(self, args, keywords, &view);
+}
+
 const char mesh_faces_doc[] =
     "faces($self, surface, *, moves=None, reach=0.0, progress=None)\n--\n\n"
-    "The endless face that each triangle is on: a read-only (m, 9) float64 view of kind (as in origins()), point (x, "
-    "y, "
-    "z),\n"
-    "axis (unit), radius, and second number. Plane: a point, the normal out of the material; cylinder: axis and "
-    "radius;\n"
-    "cone: apex, axis, second = tangent of the angle between axis and face; sphere: centre, radius; torus: centre, "
-    "axis,\n"
-    "radius to the middle of the tube, second = radius of the tube. Looked for as origins() does.";
+    "The endless face that each triangle is on: a read-only (m, 9) float64 view of kind (as in origins()), point\n"
+    "(x, y, z), axis (unit), radius, and second number. Plane: a point, the normal out of the material; cylinder:\n"
+    "axis and radius; cone: apex, axis, second = tangent of the angle between axis and face; sphere: centre,\n"
+    "radius; torus: centre, axis, radius to the middle of the tube, second = radius of the tube. Looked for as\n"
+    "origins() does.";
+
+enum { FACE_COLUMNS = 9 };
+
+static swarf_status fill_faces(const swarf_surface *surface, const swarf_surface_point *points, size_t rows,
+                               const swarf_progress *progress, void *out)
+{
+    (void)progress; /* a microsecond each */
+    double *row = out;
+    for (size_t i = 0; i < rows; i++, row += FACE_COLUMNS) {
+        const swarf_face_shape shape = swarf_surface_shape(surface, &points[i]);
+        row[0] = shape.kind;
+        memcpy(row + 1, shape.point, sizeof shape.point);
+        memcpy(row + 4, shape.axis, sizeof shape.axis);
+        row[7] = shape.radius;
+        row[8] = shape.second;
+    }
+    return SWARF_OK;
+}
 
 PyObject *mesh_faces(PyObject *self, PyObject *args, PyObject *keywords)
 {
-    enum { COLUMNS = 9 };
-    static char *names[] = {"surface", "moves", "reach", "progress", NULL};
-    module_state *state = state_of(self);
-    PyObject *given, *moves = Py_None, *progress = NULL;
-    const swarf_surface *surface;
-    const swarf_mesh *mesh = ((mesh_object *)self)->handle;
-    size_t count;
-    double reach = 0;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$OdO:faces", names, state->surface, &given, &moves, &reach,
-                                     &progress) ||
-        surface_argument(state, given, moves, &surface, &count))
-        return NULL;
-    const size_t rows = swarf_mesh_triangles(mesh).triangle_count;
-    swarf_surface_point *points = PyMem_Calloc(rows + 1, sizeof *points);
-    PyObject *values = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)(COLUMNS * rows * sizeof(double))), *result = NULL;
-    native_call call;
-    if (!points) {
-        PyErr_NoMemory();
-    } else if (values && !call_begin(&call, progress)) {
-        double *out = (double *)(void *)PyBytes_AsString(values);
-        const swarf_status status = swarf_mesh_origins(mesh, surface, count, reach, &call.progress, points);
-        for (size_t i = 0; !status && i < rows; i++) {
-            const swarf_face_shape shape = swarf_surface_shape(surface, &points[i]);
-            double *row = out + COLUMNS * i;
-            row[0] = shape.kind;
-            memcpy(row + 1, shape.point, sizeof shape.point);
-            memcpy(row + 4, shape.axis, sizeof shape.axis);
-            row[7] = shape.radius;
-            row[8] = shape.second;
-        }
-        if (!call_end(&call, state, status))
-            result = buffer_view(state, values, out, "d", sizeof(double), rows, COLUMNS, NULL);
-    }
-    PyMem_Free(points);
-    Py_XDECREF(values);
-    return result;
+    static const triangle_view view = {"O!|$OdO:faces", "d", sizeof(double), FACE_COLUMNS, fill_faces};
+    return view_triangles(self, args, keywords, &view);
 }

@@ -376,9 +376,8 @@ static PyMethodDef program_methods[] = {
      "add_operation($self, name)\n--\n\nAdd an operation, make it current and return its index."},
     {"set_section", WITH_KEYWORDS(program_set_section), METH_VARARGS | METH_KEYWORDS,
      "set_section($self, *, tool=-1, operation=..., spindle='off', spindle_rpm=0.0, coolant=0, work_offset=0)\n--\n\n"
-     "What the moves that follow share: tool number (-1: none), index of the operation (the one added\n"
-     "last), spindle \"off\", \"cw\" or \"ccw\", coolant (bit 0 mist, bit 1 flood), work offset (0 machine, 1 G54 "
-     "...)."},
+     "What the moves that follow share: tool number (-1: none), index of the operation (the one added last),\n"
+     "spindle \"off\", \"cw\" or \"ccw\", coolant (bit 0 mist, bit 1 flood), work offset (0 machine, 1 G54 ...)."},
     {"add_line", WITH_KEYWORDS(program_add_line), METH_VARARGS | METH_KEYWORDS,
      "add_line($self, end, *, kind='feed', feed_mm_min=0.0, line=0)\n--\n\n"
      "Add a straight move to `end` (three numbers, mm); kind \"feed\", \"rapid\", \"probe\" or \"position\"."},

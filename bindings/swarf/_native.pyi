@@ -417,8 +417,8 @@ class Picture:
     ) -> memoryview:
         """Tint what shows the stock by its deviation from a design Solid, as deviation_colours() does -> the deviations
         (mm, less what is meant to be left), a read-only (height, width) float64 view, NaN elsewhere. Of a picture of
-        the design, by that of a Stock from it: on faces to 0.01 voxel up to two voxels, +-inf beyond three. Needs the buffers
-        rgba, position and seen; ValueError without them. rgba is a new view, which write() writes."""
+        the design, by that of a Stock from it: on faces to 0.01 voxel up to two voxels, +-inf beyond three. Needs the
+        buffers rgba, position and seen; ValueError without them. rgba is a new view, which write() writes."""
     def write(self, path: Path, /) -> None:
         """Write the colours as PNG. OSError."""
     @property

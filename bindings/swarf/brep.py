@@ -18,9 +18,10 @@ from typing import Iterator, Optional, Sequence
 from ._native import Mesh, Surface
 from .progress import Report, check, share
 from .regions import NotAnalytic, Regions, find
-from .shapes import CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet, on, tangency, unit
+from .shapes import (CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet, on,
+                     tangency, unit)
 
-__all__ = ["CONE", "CYLINDER", "PLANE", "SPHERE", "TORUS", "Brep", "Edge", "Face", "NotAnalytic", "make"]
+__all__ = ["Brep", "Edge", "Face", "NotAnalytic", "make"]
 
 #: mm; what shapes that should meet may miss each other by: the last digits of programs are twice that, and an edge is
 #: told to be as inexact as it is.
@@ -186,11 +187,11 @@ class _Maker:
         return found[0]
 
     def place_corners(self) -> list[Vector]:
-        """Corners, each where its faces meet."""
+        """Corners, each where its faces meet; and of each edge that closes without one, a point of it."""
         meeting: dict[int, list[Equations]] = {}
         beside: dict[int, set[int]] = {}
         for chain in self.chains:
-            for vertex in (chain.vertices[0], chain.vertices[-1]):
+            for vertex in () if chain.closed else (chain.vertices[0], chain.vertices[-1]):
                 beside.setdefault(vertex, set()).update((chain.left, chain.right))
                 if chain.touching:
                     meeting.setdefault(vertex, []).append(self.touch(chain))
@@ -207,6 +208,11 @@ class _Maker:
             if self.corner_of[vertex] == len(corners):
                 cells.setdefault(tuple(cell), []).append(len(corners))
                 corners.append(place)
+        for chain in self.chains:
+            if chain.closed:
+                vertex = chain.vertices[0]
+                self.corner_of[vertex] = len(corners)
+                corners.append(self.solve(self.contact(chain), self.regions.vertices[vertex], "an edge"))
         return corners
 
     def settle_corners(self, corners: list[Vector]) -> None:
@@ -309,7 +315,7 @@ class _Maker:
         for chain in self.chains:
             check(progress, 0.0)
             self.tell_touching(chain)
-        corners = self.place_corners_and_closed()
+        corners = self.place_corners()
         self.settle_corners(corners)
         edges: list[Edge] = []
         edge_of: dict[int, int] = {}
@@ -349,19 +355,6 @@ class _Maker:
                 used.update(loop)
         if len(used) != 2 * len(made.edges):
             raise self.fail("an edge has no face on one side")
-
-    def place_corners_and_closed(self) -> list[Vector]:
-        """Corners, and on edges that close without one, a point of them."""
-        closed = [chain for chain in self.chains if chain.closed]
-        open_chains, self.chains = [chain for chain in self.chains if not chain.closed], self.chains
-        every, self.chains = self.chains, open_chains
-        corners = self.place_corners()
-        self.chains = every
-        for chain in closed:
-            vertex = chain.vertices[0]
-            self.corner_of[vertex] = len(corners)
-            corners.append(self.solve(self.contact(chain), self.regions.vertices[vertex], "an edge"))
-        return corners
 
 
 def _forwards(points: list[Vector], end: Vector) -> list[Vector]:

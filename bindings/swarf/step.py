@@ -6,8 +6,8 @@ import math
 from typing import Iterable
 
 from . import report
-from .brep import CONE, CYLINDER, PLANE, SPHERE, Brep, Edge, Face
-from .shapes import Vector, add, cross, distance, dot, unit
+from .brep import Brep, Edge, Face
+from .shapes import CONE, CYLINDER, PLANE, SPHERE, Vector, add, cross, distance, dot, unit
 
 
 def _number(value: float) -> str:

@@ -149,7 +149,7 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
     int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, bounds, x), seen = 0, outside = 0;
     const size_t rounds = sizeof approach / sizeof *approach;
     for (size_t round = 0; round < rounds && rank > 1; round++) {
-        swarf_contour_clamp(&c->polygon->bounds, x);
+        swarf_contour_clamp(bounds, x);
         const double about[3] = {x[0], x[1], x[2]};
         seen = take_again(c, chosen, count, x, approach[round], planes);
         rank = swarf_contour_meet(planes, count, about, least_eigenvalue, bounds, x);
@@ -158,7 +158,7 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
     for (int k = 0; k < 3; k++)
         outside |= x[k] < bounds->lo[k] - allowed_outside || x[k] > bounds->hi[k] + allowed_outside;
     swarf_surface_point found;
-    swarf_contour_clamp(&c->polygon->bounds, x);
+    swarf_contour_clamp(bounds, x);
     return rank > 1 && seen && !outside && fabs(look(c, x, &found)) <= on_surface ? rank : 1;
 }
 

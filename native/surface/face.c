@@ -47,7 +47,7 @@ static void turn_about(const swarf_exact_piece *piece, const double foot[3], dou
     }
 }
 
-/* Along a straight line in the direction `along` (unit): a plane, or a cylinder about it. `level`: it has no height. */
+/* Along a straight line in the direction `along` (unit): a plane, or a cylinder about it. */
 static void push_along(const swarf_exact_piece *piece, const double start[3], const double along[3],
                        const double normal[3], swarf_face_shape *shape)
 {
@@ -94,10 +94,7 @@ static void left_by(const swarf_trace *trace, const swarf_path *path, const swar
     if (t < same || t > 1 - same || (trace->kind == TRACE_LEVEL && trace->run == 0)) {
         turn_about(piece, t < 0.5 ? path->start : path->end, 0, 1, shape);
     } else if (trace->kind == TRACE_LEVEL || trace->kind == TRACE_TILTED) {
-        const double length = hypot(trace->run, trace->rise);
-        const double along[3] = {trace->ux * trace->run / length, trace->uy * trace->run / length,
-                                 trace->kind == TRACE_LEVEL ? 0 : trace->rise / length};
-        push_along(piece, trace->point, along, normal, shape);
+        push_along(piece, trace->point, trace->along, normal, shape);
     } else if (trace->kind == TRACE_ARC) {
         turn_along(piece, path, t, normal, shape);
     } else if (path->arc.plane == SWARF_PLANE_XY && !piece->is_arc && fabs(piece->first_z) < same) {

@@ -78,7 +78,7 @@ static void make_line(swarf_trace *trace, const double a[3], const double b[3])
     trace->kind = trace->slope > 0 ? TRACE_TILTED : TRACE_LEVEL;
     trace->cosine = 1 / sqrt(1 + trace->slope * trace->slope);
     trace->length = sqrt(trace->run * trace->run + trace->rise * trace->rise);
-    if (trace->kind == TRACE_LEVEL) return;
+    if (!(trace->length > 0)) return;
     trace->along[0] = trace->ux * trace->run / trace->length;
     trace->along[1] = trace->uy * trace->run / trace->length;
     trace->along[2] = trace->rise / trace->length;

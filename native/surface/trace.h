@@ -16,8 +16,8 @@ typedef struct swarf_trace {
     double point[3];          /* lower end of a line; of an arc its height in z */
     double ux, uy, run, rise; /* line: horizontal direction (unit), horizontal and vertical length, both >= 0 */
     double slope;             /* rise / run, 0 where it is vertical */
-    double cosine;            /* run by length */
-    double length, along[3];  /* tilted line: its length and direction */
+    double cosine;            /* run by length; 1 where it is vertical */
+    double length, along[3];  /* of a line: its length and direction, of no length none */
     double centre[2], radius; /* arc */
     double from, turn;        /* arc: angle of its start, turn > 0 counter-clockwise */
     double t0, t1;            /* of the whole move, at the start and the end of this part */

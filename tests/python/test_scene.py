@@ -133,7 +133,8 @@ def test_refusals(stock):
         scene.render(camera, progress=lambda fraction: True)
 
 
-def test_the_exact_surface_knows_its_moves():
+def slotted():
+    """(the block before, program, tools, scene of the block after): a plunge and a slot along x."""
     first = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
     stock = first.copy()
     program = swarf.Program(start=(10, 20, 5))
@@ -143,7 +144,11 @@ def test_the_exact_surface_knows_its_moves():
     program.add_line((50, 20, -4), feed_mm_min=100)
     tools = {1: swarf.Cutter("flat:d=10,l=20")}
     stock.simulate(program, tools)
-    scene = swarf.Scene(stock)
+    return first, program, tools, swarf.Scene(stock)
+
+
+def test_the_exact_surface_knows_its_moves():
+    first, program, tools, scene = slotted()
     camera = swarf.Camera((30, 20, 50), (30, 20, 0), (0, 1, 0), height=60)
     with pytest.raises(ValueError, match="no surface"):
         scene.set_moves(1)
@@ -171,15 +176,7 @@ def test_the_exact_surface_knows_its_moves():
 
 
 def test_what_is_shown_stays_while_a_picture_is_made():
-    first = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
-    stock = first.copy()
-    program = swarf.Program(start=(10, 20, -4))
-    program.add_operation("slot")
-    program.set_section(tool=1)
-    program.add_line((50, 20, -4), feed_mm_min=100)
-    tools = {1: swarf.Cutter("flat:d=10,l=20")}
-    stock.simulate(program, tools)
-    scene = swarf.Scene(stock)
+    first, program, tools, scene = slotted()
     scene.set_surface(first, program, tools)
     camera = swarf.Camera((30, -40, 60), (30, 20, 0), (0, 0, 1), height=60)
     calm = bytes(scene.render(camera, 200, 150, samples=2).rgba)
@@ -202,15 +199,7 @@ def test_what_is_shown_stays_while_a_picture_is_made():
 
 
 def test_corners_are_not_lighter_than_the_floor_beside_them():
-    first = swarf.Stock.box((0, 0, -10), (60, 40, 0), 0.5)
-    stock = first.copy()
-    program = swarf.Program(start=(10, 20, -4))
-    program.add_operation("slot")
-    program.set_section(tool=1)
-    program.add_line((50, 20, -4), feed_mm_min=100)
-    tools = {1: swarf.Cutter("flat:d=10,l=20")}
-    stock.simulate(program, tools)
-    scene = swarf.Scene(stock)
+    first, program, tools, scene = slotted()
     scene.set_surface(first, program, tools)
     camera = swarf.Camera((30, 20, 50), (30, 20, 0), (0, 1, 0), height=12)
     rgba = scene.render(camera, 20, 240, samples=1, edges=False).rgba

@@ -254,8 +254,8 @@ SOLID_TRIANGLES_MAX = 500000
 @dataclass
 class Analytic:
     """A STEP file with faces as they were cut. share: part of the area on planes, cylinders, cones, spheres and tori,
-    None where it was not measured; reason: why there is no file, None when there is; volume_mm3 and area_mm2 of the mesh it was made of, which is within
-    error_mm; faces: their number."""
+    None where it was not measured; reason: why there is no file, None when there is; volume_mm3 and area_mm2 of the mesh
+    it was made of, which is within error_mm; faces: their number."""
 
     share: float
     reason: str = None
