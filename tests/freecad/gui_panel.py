@@ -270,7 +270,10 @@ class Watching(PanelTest):
             assert abs(panel.picking.found.depth_below_top + point[2]) < 0.1
             assert [obj.Label for obj in Gui.Selection.getSelection()] == [operation]
         line = panel.picking.found.line
-        assert panel.program.currentIndex().row() == line and panel.player.selected == line
+        self.settle()  # the picture that shows the line's faces is here: it does not move the lists on to the cutter
+        assert panel.player.selected == line
+        assert panel.program.currentIndex().row() == line, (panel.program.currentIndex().row(), line)
+        assert panel.operations.currentItem() is panel.operations.topLevelItem(0)
         wait_for(lambda: self.is_marked((60, 10, -1)), "the line's faces to stand out")
         assert not self.is_marked((25, 25, -5))
         self.settle()

@@ -12,11 +12,11 @@ TICK_MS = 30
 
 class Player:
     """transport: the core Transport of the job that is open, None for none. selected: the line whose faces stand out in
-    the picture, None for none."""
+    the picture, None for none; the list marks it as well while the cutting stands where it stood at the selection."""
 
     def __init__(self, panel):
         self._panel = panel
-        self.transport = self._line = self.selected = None
+        self.transport = self.selected = self._stood = None
         self._clock = QtCore.QElapsedTimer()
         self._timer = QtCore.QTimer(panel)
         self._timer.setInterval(TICK_MS)
@@ -32,11 +32,12 @@ class Player:
     def close_job(self):
         """Play nothing any more."""
         self._timer.stop()
-        self.transport = self._line = self.selected = None
+        self.transport = self.selected = self._stood = None
         self._panel.bar.set_playing(False)
 
     def select(self, line):
         """Have the faces that a line cut stand out, None: none."""
+        self._stood = None if self.transport is None else self.transport.wanted
         if line != self.selected:
             self.selected = line
             self._panel.wish()
@@ -71,16 +72,12 @@ class Player:
             self._panel.bar.set_playing(False)
 
     def seek(self, place, line=None, mark=None):
-        """Stop, and go to a place. line: stays the marked one if the place is behind its last move. mark: the point
-        that is marked from now on, None: none."""
+        """Stop, and go to a place. line: the one that is selected from now on, mark: the point that is marked, None:
+        none."""
         if self.transport is None:
             return
-        if line is not None:
-            self._line = line
-        if self._line is not None and place != self._panel.session.listing.moves_of(self._line)[1]:
-            self._line = None
-        self.select(line)
         self.transport.seek(place)
+        self.select(line)
         self._timer.stop()
         self._panel.bar.set_playing(False)
         self._panel.view.set_mark(mark)
@@ -135,8 +132,8 @@ class Player:
         listing, last = session.listing, len(session.clock)
         move = min(int(place), max(last - 1, 0))
         line, operation = listing.line_of(move), listing.operation_at(move)
-        if self._line is not None and place == listing.moves_of(self._line)[1]:
-            line, operation = self._line, listing.operation[self._line]
+        if self.selected is not None and place == self._stood:
+            line, operation = self.selected, listing.operation[self.selected]
         panel.timeline.set_place(place)
         panel.bar.set_clock(self.transport.time, session.clock.seconds)
         panel.program.set_current(line)
