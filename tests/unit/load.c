@@ -291,7 +291,7 @@ static void check_laws(uint64_t seed)
     test_random random = test_random_begin(seed);
     const char *cutter = cutters[test_random_below(&random, 7)];
     const double voxel = test_random_in(&random, 0.3, 0.7);
-    float *kept[SWARF_LOAD_COUNT];
+    float *kept[SWARF_LOAD_COUNT] = {0};
     uint64_t hash[2];
     const uint64_t state = random.state;
     for (int pass = 0; pass < 2; pass++) {
