@@ -41,6 +41,7 @@ static PyStructSequence_Field contour_fields[] = {
     {"intersections_left", "Pairs that still do."},
     {"error_mm", "Bound of the distance to the mesh of all vertices."},
     {"budget_met", "Whether there are no more triangles than were allowed."},
+    {"unseen_mm3", "Material thinner than a voxel that the mesh has not, about."},
     {NULL, NULL},
 };
 
@@ -48,7 +49,7 @@ PyStructSequence_Desc contour_desc = {
     .name = "swarf.Contour",
     .doc = "What Mesh.from_stock() or Mesh.stream() came to.",
     .fields = contour_fields,
-    .n_in_sequence = 9,
+    .n_in_sequence = 10,
 };
 
 /** A struct sequence of `count` values, whose references it takes; NULL with an exception when one is NULL. */
@@ -201,15 +202,11 @@ PyObject *mesh_section(PyObject *self, PyObject *args, PyObject *keywords)
 
 PyObject *contour_tuple(module_state *state, const swarf_contour_report *r)
 {
-    PyObject *const values[] = {PyLong_FromSize_t(r->full_triangles),
-                                PyLong_FromSize_t(r->triangles),
-                                PyLong_FromSize_t(r->sharp_vertices),
-                                PyLong_FromSize_t(r->exact_vertices),
-                                PyLong_FromSize_t(r->parted_cells),
-                                PyLong_FromSize_t(r->intersections_found),
-                                PyLong_FromSize_t(r->intersections_left),
-                                PyFloat_FromDouble(r->error_mm),
-                                PyBool_FromLong(r->budget_met)};
+    PyObject *const values[] = {PyLong_FromSize_t(r->full_triangles),     PyLong_FromSize_t(r->triangles),
+                                PyLong_FromSize_t(r->sharp_vertices),     PyLong_FromSize_t(r->exact_vertices),
+                                PyLong_FromSize_t(r->parted_cells),       PyLong_FromSize_t(r->intersections_found),
+                                PyLong_FromSize_t(r->intersections_left), PyFloat_FromDouble(r->error_mm),
+                                PyBool_FromLong(r->budget_met),           PyFloat_FromDouble(r->unseen_mm3)};
     return sequence_of(state->contour, values, sizeof values / sizeof *values);
 }
 

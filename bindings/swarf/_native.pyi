@@ -774,6 +774,7 @@ class Contour(NamedTuple):
     intersections_left: int
     error_mm: float
     budget_met: bool
+    unseen_mm3: float
 
 class Comparison(NamedTuple):
     """Stock and design by volume, mm3."""

@@ -390,6 +390,7 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
         if (!swarf_contour_is_within(work, block, 0)) continue;
         report->sharp_vertices += block->sharp_count;
         report->exact_vertices += block->exact_count;
+        report->unseen_mm3 += (double)block->unseen * pow(work->layout->voxel, 3);
         for (int x = 0; x < 8; x++) report->parted_cells -= (size_t)__builtin_popcountll(block->cell_mask[x]);
         report->parted_cells += block->vertex_count;
     }

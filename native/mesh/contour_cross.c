@@ -195,6 +195,32 @@ static swarf_status cross_edges(const contour *work, contour_block *block, const
     return SWARF_OK;
 }
 
+/* Material in voxels of the block whose centres are outside, as all about them are: as much of each as in a voxel
+ * beside a face at that distance. In voxels. */
+static float find_unseen(const float values[SWARF_HALO * SWARF_HALO * SWARF_HALO], double voxel)
+{
+    enum { ROWS = 10 }; /* one about the block */
+    unsigned inside[ROWS][ROWS];
+    for (int x = 0; x < ROWS; x++)
+        for (int y = 0; y < ROWS; y++) {
+            const float *row = values + (x * SWARF_HALO + y) * SWARF_HALO;
+            unsigned signs = 0;
+            for (int z = 0; z < ROWS; z++) signs |= (unsigned)(row[z] < 0) << z;
+            inside[x][y] = signs | signs << 1 | signs >> 1;
+        }
+    const float reach = (float)(0.5 * voxel), scale = (float)(1 / voxel);
+    float sum = 0;
+    for (int x = 0; x < 8; x++)
+        for (int y = 0; y < 8; y++) {
+            const float *row = values + ((x + 1) * SWARF_HALO + y + 1) * SWARF_HALO + 1;
+            unsigned seen = 0;
+            for (int c = 0; c < 9; c++) seen |= inside[x + c / 3][y + c % 3];
+            for (int z = 0; z < 8; z++)
+                if (row[z] < reach && !(seen >> (z + 1) & 1)) sum += 0.5f - row[z] * scale;
+        }
+    return sum;
+}
+
 swarf_status swarf_contour_cross(contour *work, contour_block *block)
 {
     float values[SWARF_HALO * SWARF_HALO * SWARF_HALO];
@@ -207,6 +233,7 @@ swarf_status swarf_contour_cross(contour *work, contour_block *block)
             for (int z = 0; z < 9; z++) signs |= (unsigned)(row[z] < 0) << z;
             inside[x][y] = (uint16_t)signs;
         }
+    block->unseen = find_unseen(values, work->layout->voxel);
     uint32_t count = 0;
     for (int axis = 0; axis < 3; axis++)
         for (int x = 0; x < 8; x++) {

@@ -42,12 +42,16 @@ typedef struct swarf_contour_report {
     size_t intersections_left;  /**< pairs that still do: 0 unless the surface itself touches itself */
     double error_mm;            /**< bound of the distance between the mesh and the full one */
     int budget_met;             /**< 0 when error_mm stopped it above triangle_budget */
+    /** Material thinner than a voxel that the mesh has not, about, as swarf_stock_volume() counts it: in voxels whose
+     *  centre lies outside and about which no other's lies inside. */
+    double unseen_mm3;
 } swarf_contour_report;
 
 /** From a stock by dual contouring: a closed, oriented 2-manifold with edges. Which voxels are material decides how it
  *  hangs together; the surface, where it is given, decides where its vertices lie: on the true faces and edges within a
  *  hundredth of a voxel. The field alone tells faces to about as much, but edges to half a voxel; it is used where the
- *  surface does not have the stock's signs.
+ *  surface does not have the stock's signs. Walls and gaps thinner than a voxel have no voxel centre in places, and are
+ *  not there then; how much material that is the report tells.
  *  `report` may be NULL. An empty stock gives an empty mesh. SWARF_ERROR_GEOMETRY: material reaches the border of the
  *  level set, which a file of another program may do. The result does not depend on the number of threads. */
 SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options *options,

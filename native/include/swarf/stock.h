@@ -60,7 +60,9 @@ SWARF_API uint32_t swarf_stock_generation(const swarf_stock *stock);
 SWARF_API swarf_status swarf_stock_changed(swarf_stock *stock, uint32_t since, swarf_box *boxes, size_t room,
                                            size_t *count);
 /** Volume in mm3, to the second order of the voxel h: besides 1e-4 of it, right-angled convex edges add up to h^2 / 4
- *  per mm of their length, and concave ones take as much away. */
+ *  per mm of their length, and concave ones take as much away; a wall thinner than a voxel, t, adds (h - t)^2 / (4 h)
+ *  per mm2 where it lies anyhow, nothing where one side is a plane halfway between voxel centres, and a gap takes as
+ *  much away. */
 SWARF_API swarf_status swarf_stock_volume(swarf_stock *stock, double *out);
 /** 64-bit hash of all values, the same for the same content whatever the threads or kernels. */
 SWARF_API swarf_status swarf_stock_hash(swarf_stock *stock, uint64_t *out);
