@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
-from gui_support import OUT, QtWidgets, pump, screenshot, start, wait_for  # noqa: E402
+from gui_support import OUT, QtWidgets, live, screenshot, start, wait_for  # noqa: E402
 
 
 def menu_texts():
@@ -25,8 +25,19 @@ def menu_texts():
     return found
 
 
+def no_panel():
+    """Wait until no task is open: FreeCAD closes them when it comes to it."""
+    wait_for(lambda: not Gui.Control.activeDialog(), "the task's end")
+
+
+def close_panel():
+    """Close the task that is open."""
+    Gui.Control.closeDialog()
+    no_panel()
+
+
 def cancel_at_last(opened):
-    """Cancel when the thread is through, and the panel has not heard of it yet."""
+    """Cancel when the thread is through, and the panel has not heard of it yet: wait_for() lets it hear nothing."""
     wait_for(lambda: opened.worker is not None, "the thread")
     opened.worker.join(60)
     opened.reject()
@@ -39,11 +50,9 @@ def check_export(obj):
     from freecad.swarf_cam.gui import exporting
 
     Gui.runCommand("Swarf_Export", 0)
-    pump(0.3)
-    assert Gui.getMainWindow().findChild(QtWidgets.QWidget, "SwarfExportPanel") is not None
+    wait_for(lambda: Gui.getMainWindow().findChild(QtWidgets.QWidget, "SwarfExportPanel") is not None, "the panel")
     screenshot("export.png")
-    Gui.Control.closeDialog()
-    pump(0.2)
+    close_panel()
     opened = exporting.show_panel(obj)
     opened.kind.setCurrentIndex(opened.kind.findData(".ply"))
     opened.colour.setCurrentIndex(opened.colour.findData("operation"))
@@ -60,7 +69,7 @@ def check_export(obj):
     wait_for(lambda: opened.closed, "export")
     with open(path, "rb") as file:
         assert b"red" in file.read(600)
-    pump(0.2)
+    no_panel()
 
 
 def check_next(document, first):
@@ -77,11 +86,11 @@ def check_next(document, first):
     assert opened.stock.source.count() == 2 and not opened.stock.lie.isEnabled()
     opened.stock.source.setCurrentIndex(1)
     opened.stock.lie.setCurrentIndex(opened.stock.lie.findData("X"))
-    pump(0.2)
     assert opened.voxel.value() == first.VoxelSize.Value
     screenshot("next.png")
     opened.accept()
     wait_for(lambda: opened.closed, "the second set-up")
+    no_panel()
     assert setups.previous_of(job) is first
     second, = [item for item in document.Objects if simulation.is_simulation(item) and item is not first]
     assert second.UpToDate and abs(second.VolumeInitial.Value - first.VolumeFinal.Value) < 1
@@ -121,48 +130,39 @@ def check():
     job = samples.make_job(document)
     document.recompute()
     Gui.activateWorkbench("SwarfWorkbench")
-    pump(0.5)
-    assert "Simulate milling" in menu_texts(), menu_texts()
+    wait_for(lambda: "Simulate milling" in menu_texts(), "the workbench's menu")
     assert native.is_available(), "the native module is not on the path"
     Gui.ActiveDocument.ActiveView.viewIsometric()
     Gui.SendMsgToActiveView("ViewFit")
 
     Gui.Selection.addSelection(document.Name, job.Name)
     Gui.runCommand("Swarf_Simulate", 0)
-    pump(0.5)
-    form = Gui.getMainWindow().findChild(QtWidgets.QWidget, "SwarfSimulationPanel")
-    assert form is not None, "the command opened no panel"
+    wait_for(lambda: Gui.getMainWindow().findChild(QtWidgets.QWidget, "SwarfSimulationPanel") is not None, "the panel")
     screenshot("panel.png")
-    Gui.Control.closeDialog()
-    pump(0.2)
+    close_panel()
 
     opened = panel.show_panel(job)
     opened.voxel.setValue(0.002)
-    pump(0.1)
     opened.accept()
-    pump(0.1)
-    screenshot("refused.png")
     wait_for(lambda: not opened.working, "refusal of a voxel that needs too much memory")
+    screenshot("refused.png")
     assert opened.message.text(), "no message for a voxel that needs too much memory"
     assert not [obj for obj in document.Objects if simulation.is_simulation(obj)]
 
     opened.voxel.setValue(0.04)
     opened.accept()
-    opened.reject()
-    wait_for(lambda: not opened.working, "cancel")
-    cancelled = not opened.closed
-    if cancelled:  # fast machines may be done before they are asked
-        assert not [obj for obj in document.Objects if simulation.is_simulation(obj)], "cancelled, but not undone"
-        opened.voxel.setValue(0.2)
-        undo = document.UndoCount
-        opened.accept()
-        cancel_at_last(opened)
-        assert document.UndoCount == undo and len(document.findObjects("Mesh::FeaturePython")) == 0
-        opened.accept()
-        wait_for(lambda: opened.closed, "simulation")
-        assert document.UndoCount == undo + 1, "not one transaction"
-    pump(0.3)
-    assert not Gui.Control.activeDialog()
+    opened.reject()  # before the first slice of reading
+    assert not opened.working and not opened.closed
+    assert not [obj for obj in document.Objects if simulation.is_simulation(obj)], "cancelled, but not undone"
+    opened.voxel.setValue(0.2)
+    undo = document.UndoCount
+    opened.accept()
+    cancel_at_last(opened)
+    assert document.UndoCount == undo and len(document.findObjects("Mesh::FeaturePython")) == 0
+    opened.accept()
+    wait_for(lambda: opened.closed, "simulation")
+    assert document.UndoCount == undo + 1, "not one transaction"
+    no_panel()
 
     obj, = [item for item in document.Objects if simulation.is_simulation(item)]
     assert obj.UpToDate and obj.VolumeRemoved.Value > 400, obj.VolumeRemoved
@@ -181,7 +181,7 @@ def check():
     Gui.Selection.addSelection(document.Name, obj.Name)
     Gui.runCommand("Swarf_Update", 0)
     wait_for(lambda: obj.UpToDate, "update")
-    pump(0.3)
+    no_panel()
     assert obj.VolumeRemoved.Value > 1000, obj.VolumeRemoved
 
     check_export(obj)
@@ -189,15 +189,14 @@ def check():
 
     cam = "CAMWorkbench" if "CAMWorkbench" in Gui.listWorkbenches() else "PathWorkbench"
     Gui.activateWorkbench(cam)
-    pump(1.0)
+    wait_for(lambda: "Simulate milling" in menu_texts(), "the command in the menu of " + cam)
     screenshot("cam.png")
-    assert "Simulate milling" in menu_texts(), "the command is not in the menu of %s: %s" % (cam, menu_texts())
 
     path = os.path.join(OUT, "gui.FCStd")
     document.saveAs(path)
     FreeCAD.closeDocument(document.Name)
     document = FreeCAD.openDocument(path)
-    pump(0.5)
+    live()
     obj, = [item for item in document.Objects if simulation.is_simulation(item)]
     assert type(obj.ViewObject.Proxy).__name__ == "SimulationView" and obj.ViewObject.CreaseAngle == 25
     assert obj.UpToDate and obj.ViewObject.Proxy.getIcon().endswith("swarf.svg")

@@ -7,8 +7,8 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
-from gui_support import QtCore, QtWidgets, pump, screenshot, start, wait_for  # noqa: E402
-from panel_support import PanelTest, click, key, new_job  # noqa: E402
+from gui_support import QtWidgets, screenshot, start, wait_for  # noqa: E402
+from panel_support import PanelTest, click, new_job  # noqa: E402
 
 
 class Dense(PanelTest):
@@ -20,8 +20,7 @@ class Dense(PanelTest):
         ratio = view.devicePixelRatioF()  # QT_SCALE_FACTOR times what Qt makes of the screen
         assert ratio >= 2.0, ratio
         panel.player.seek(panel.transport.end)
-        key(view, QtCore.Qt.Key_2, "2")
-        pump(0.5)
+        self.turn("2")
         self.settle()
         assert (view.frame.width, view.frame.height) == (int(ratio * view.width()), int(ratio * view.height()))
         x, y, _ = view.camera.project((54, 25, -3), view.aspect())
@@ -30,7 +29,7 @@ class Dense(PanelTest):
         wait_for(lambda: panel.picking.found is not None, "the answer to a click")
         assert panel.findChild(QtWidgets.QLabel, "SwarfPoint-operation").text() == "Wave"
         panel.tools.set_colouring("deviation")
-        self.redrawn()
+        self.settle()
         for page in (panel.operations, panel.findings, panel.deviation, panel.setup):
             panel.tabs.setCurrentWidget(page)
             screenshot("dense-%s.png" % page.objectName())

@@ -9,7 +9,7 @@ import FreeCAD
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
-from gui_support import QtCore, pump, screenshot, start, wait_for  # noqa: E402
+from gui_support import screenshot, start, wait_for  # noqa: E402
 from panel_support import PanelTest, new_job  # noqa: E402
 
 
@@ -31,9 +31,8 @@ class Moments(PanelTest):
         panel.player.seek(0)
         panel.player.set_speed(1.0)
         self.button("play")
-        pump(0.3)
-        holes = document.getObject("Wave")
-        holes.Path = samples.path_of("G0 Z5", "G0 X44 Y10", "G1 Z-4 F5", "G1 X74 F10")
+        wait_for(lambda: panel.transport.at > 0, "playing")
+        document.getObject("Wave").Path = samples.path_of("G0 Z5", "G0 X44 Y10", "G1 Z-4 F5", "G1 X74 F10")
         document.recompute()
         wait_for(lambda: banner.isVisible() and "changed" in banner.text.text(), "the notice of an edit")
         assert panel.transport.playing, "an edit stopped playing"
@@ -45,7 +44,6 @@ class Moments(PanelTest):
         wait_for(lambda: banner.isVisible() and "changed" in banner.text.text(), "the notice of another tool")
         panel.opening.reload()
         panel.close()  # while it works
-        pump(0.5)
         wait_for(lambda: panel.opening.ended, "the engine's end")
         self.open(document, job)
         document.removeObject(job.Name)
@@ -69,21 +67,17 @@ class Moments(PanelTest):
         opening.watch(job)
         document.getObject("Wave").Path = samples_path("G0 Z5", "G0 X44 Y10", "G1 Z-2 F5", "G1 X70 F10")
         document.recompute()
-        wait_for(lambda: panel.session is not None, "opening")
-        pump(1.0)
-        wait_for(lambda: panel.session is not None, "opening")
+        wait_for(lambda: panel.session is not None and not opening.comparing, "opening")
         wave = panel.session.listing.operations[2]
         assert dict(wave.commands[-1].Parameters)["X"] == 70.0, "what is shown is what the document has"
         assert banner.isHidden(), banner.text.text()
         opening.watch(job)
         panel.close()
-        pump(0.5)
         wait_for(lambda: opening.ended, "the engine's end")
         assert panel.session is None
         self.open(document, job)
         panel.findings.run.click()
         panel.close()  # while it checks
-        pump(0.5)
         wait_for(lambda: opening.ended, "the engine's end")
         self.open(document, job)
 
@@ -107,9 +101,8 @@ class Moments(PanelTest):
         session.draw = no_memory
         banner.done()
         panel.view.fit()
-        wait_for(lambda: banner.isVisible() and "emory" in banner.text.text(), "the message")
+        wait_for(lambda: not panel.view.turning and banner.isVisible() and "emory" in banner.text.text(), "the message")
         del session.draw
-        pump(0.5)
         from freecad.swarf_cam import checks
         run, checks.run = checks.run, no_memory
         panel.findings.run.click()
@@ -117,7 +110,7 @@ class Moments(PanelTest):
         checks.run = run
         assert "1 GiB" in panel.findings.state.text()
         panel.opening.reload()
-        wait_for(lambda: panel.session not in (session, None), "reading again")
+        self.opened()
         self.checked()
         assert panel.checking.outcome is not None
 
@@ -133,7 +126,7 @@ class Moments(PanelTest):
         panel.opening.watch(job)
         FreeCAD.closeDocument(document.Name)
         wait_for(lambda: banner.isVisible() and "closed" in banner.text.text(), "the notice of closing")
-        pump(0.5)
+        wait_for(lambda: panel.opening.ended, "the engine's end")
         assert panel.session is None and not banner.working
 
     def closing(self):
@@ -143,10 +136,9 @@ class Moments(PanelTest):
         self.open(document, job)
         panel.player.set_speed(1.0)
         self.button("play")
-        pump(0.3)
+        wait_for(lambda: panel.transport.at > 0, "playing")
         FreeCAD.closeDocument(document.Name)
         wait_for(lambda: panel.banner.isVisible() and "closed" in panel.banner.text.text(), "the notice of closing")
-        pump(0.3)
         screenshot("panel-closed.png")
 
 
@@ -161,7 +153,7 @@ def check():
     document, job = new_job("third")
     test.open(document, job)
     test.button("play")
-    pump(0.2)
+    wait_for(lambda: test.panel.transport.at > 0, "playing")
 
 
 start(check)

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The live panel in the real GUI (see run): driven by buttons, slider, keys and mouse, judged by what it shows."""
 
+import contextlib
 import os
 import sys
 import shutil
 import tempfile
+import threading
 
 import FreeCAD
 import FreeCADGui as Gui
@@ -12,7 +14,7 @@ import FreeCADGui as Gui
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
-from gui_support import OUT, QtCore, QtWidgets, pump, screenshot, start, wait_for  # noqa: E402
+from gui_support import OUT, QtCore, QtWidgets, live, screenshot, start, wait_for  # noqa: E402
 from PySide import QtGui  # noqa: E402
 from panel_support import PanelTest, click, differing, drag, key, mouse, new_job, wheel  # noqa: E402
 
@@ -102,20 +104,31 @@ class Watching(PanelTest):
         share = panel.transport.time / panel.session.clock.seconds
         assert abs(share - 0.4) < 0.02, share
         screenshot("panel-slider.png")
-        # at 20 times the machine's speed a second is at most twenty of the machine's; how many depends on this one
-        panel.player.seek(0)
-        self.settle(0.0)
-        panel.player.set_speed(20.0)
+        # at 5 times the machine's speed a second is at most five of the machine's; how many depends on this one
+        panel.player.seek(listing.operation_begin[1])
+        self.settle(float(listing.operation_begin[1]))
+        begin = panel.transport.time
+        panel.player.set_speed(5.0)
         clock = QtCore.QElapsedTimer()
         clock.start()
         key(panel.view, QtCore.Qt.Key_Space, " ")
-        pump(1.5)
-        wait_for(lambda: panel.transport.time > 1, "playing")
-        screenshot("panel-playing.png")
+        wait_for(lambda: panel.transport.time > begin + 2, "playing")
         key(panel.view, QtCore.Qt.Key_Space, " ")
         assert not panel.transport.playing
-        speed = panel.transport.time / (clock.elapsed() / 1000.0)
-        assert speed < 21, "%.1f times as fast as the machine instead of 20" % speed
+        speed = (panel.transport.time - begin) / (clock.elapsed() / 1000.0)
+        assert speed < 5.25, "%.1f times as fast as the machine instead of 5" % speed
+        key(panel.view, QtCore.Qt.Key_Space, " ")
+        screenshot("panel-playing.png")
+        panel.player.seek(0)
+        # paused before the first picture of it: what is shown is still the one from before
+        self.settle(0.0)
+        panel.player.seek(panel.transport.end)
+        self.settle(panel.transport.end)
+        panel.player.seek(1)
+        panel.player.toggle()
+        panel.player.toggle()
+        assert not panel.transport.playing and panel.transport.wanted == 1.0
+        self.settle(1.0)
         # stops
         panel.bar._stops["operation"].setChecked(True)
         panel.player.seek(0)
@@ -129,8 +142,7 @@ class Watching(PanelTest):
         """Mouse and keys in the picture."""
         panel, view = self.panel, self.panel.view
         panel.player.seek(panel.transport.end)
-        key(view, QtCore.Qt.Key_F, "f")
-        pump(0.4)
+        self.turn("f")
         before, eye = self.image(), view.camera.eye
         drag(view, QtCore.Qt.LeftButton, (120, 150), (220, 190))
         assert view.camera.eye != eye
@@ -147,28 +159,38 @@ class Watching(PanelTest):
         target = view.camera.target
         drag(view, QtCore.Qt.MiddleButton, (200, 150), (240, 170))
         assert view.camera.target != target
-        for text in "123456":
-            key(view, getattr(QtCore.Qt, "Key_" + text), text)
-            pump(0.35)
-        key(view, QtCore.Qt.Key_2, "2")
-        pump(0.4)
+        for text in "1234562":
+            self.turn(text)
         self.settle()
         forward = [b - a for a, b in zip(view.camera.eye, view.camera.target)]
         assert abs(forward[0]) < 1e-6 and abs(forward[1]) < 1e-6 and forward[2] < 0, "key 2 looks from the top"
         screenshot("panel-top.png")
         # the cube: the picture from the top, so its middle is the top and its left edge another view
         click(view, view.width() - 58 - 20, 58)
-        pump(0.5)
+        wait_for(lambda: not view.turning, "the turn to the cube's edge")
         forward = [b - a for a, b in zip(view.camera.eye, view.camera.target)]
         assert forward[0] > 1e-3 and forward[2] < -1e-3, "the cube's edge turns the view: %s" % (forward,)
+        self.settle()
         mouse(view, "double", view.width() * 0.4, view.height() * 0.5, QtCore.Qt.LeftButton)
-        pump(0.4)
+        wait_for(lambda: not view.turning, "the point in the middle")
         key(view, QtCore.Qt.Key_P, "p")
         assert view.camera.perspective
         self.settle()
         key(view, QtCore.Qt.Key_P, "p")
+        # what is pressed while it turns holds when it has turned
+        key(view, QtCore.Qt.Key_2, "2")
+        key(view, QtCore.Qt.Key_P, "p")
+        key(view, QtCore.Qt.Key_F, "f")
+        assert view.turning
+        self.settle()
+        forward = [b - a for a, b in zip(view.camera.eye, view.camera.target)]
+        assert abs(forward[0]) < 1e-6 and abs(forward[1]) < 1e-6 and view.camera.perspective, (forward, view.camera)
+        key(view, QtCore.Qt.Key_P, "p")
         key(view, QtCore.Qt.Key_0, "0")
-        pump(0.5)
+        height = view.camera.height
+        key(view, QtCore.Qt.Key_Plus, "+")
+        assert not view.turning and view.camera.height < height
+        self.turn("0")
 
     def origin(self):
         """The origin's axes and the outline of the stock as it was, by a setting."""
@@ -198,8 +220,8 @@ class Watching(PanelTest):
         panel.tools.actions_by_name["path"].setChecked(True)
         panel.setFloating(True)
         panel.setGeometry(10, 10, 1180, 720)
+        wait_for(lambda: panel.splitter.orientation() == QtCore.Qt.Horizontal, "the lists beside the picture")
         self.settle()
-        assert panel.splitter.orientation() == QtCore.Qt.Horizontal
         bar = panel.tabs.tabBar()
         assert bar.tabRect(bar.count() - 1).right() <= panel.tabs.width(), "a tab is hidden"
         screenshot("panel-wide.png")
@@ -226,7 +248,6 @@ class Watching(PanelTest):
         panel.tools.set_colouring("material")
         panel.setFloating(False)
         Gui.setLocale("de")
-        pump(0.2)
         german = dock.LivePanel(Gui.getMainWindow())
         german.setObjectName("SwarfGerman")
         Gui.getMainWindow().addDockWidget(QtCore.Qt.RightDockWidgetArea, german)
@@ -238,7 +259,7 @@ class Watching(PanelTest):
         german.tabs.setCurrentWidget(german.accuracy)
         german.show()
         german.raise_()
-        pump(1.0)
+        wait_for(lambda: german.view.frame is not None and german.view.frame.sharp, "the second panel's picture")
         screenshot("panel-german.png")
         assert german.width() < 800, "the dock takes too much of a small screen: %d" % german.width()
         german.close()
@@ -247,15 +268,13 @@ class Watching(PanelTest):
         german.deleteLater()
         Gui.setLocale("en")
         panel.raise_()
-        pump(0.3)
         self.settle()
 
     def clicking(self, document):
         """From the stock to the line, and from the line to the stock."""
         panel, view = self.panel, self.panel.view
         panel.player.seek(panel.transport.end)
-        key(view, QtCore.Qt.Key_2, "2")
-        pump(0.4)
+        self.turn("2")
         self.settle()
         for point, operation, tool in (((25, 25, -5), "RoundPocket", "T1"), ((54, 25, -3), "Wave", "T2"),
                                        ((60, 10, -1), "Facing", "T1")):
@@ -279,12 +298,10 @@ class Watching(PanelTest):
         self.settle()
         screenshot("panel-point.png")
         panel.tabs.setCurrentWidget(panel.program)
-        pump(0.2)
         row = panel.session.listing.line_of(panel.session.listing.operation_begin[2] + 4)
         index = panel.program.model().index(row, 0)
         panel.program.scrollTo(index)
-        place = panel.program.visualRect(index).center()
-        click(panel.program.viewport(), place.x(), place.y())
+        self.click_row(panel.program, lambda: panel.program.visualRect(index))
         self.settle(float(panel.session.listing.moves_of(row)[1]))
         assert panel.program.currentIndex().row() == row, "the line that was clicked stays marked"
         assert panel.session.listing.text(row) in panel.view.caption[1]
@@ -292,10 +309,8 @@ class Watching(PanelTest):
         assert [obj.Label for obj in Gui.Selection.getSelection()] == ["Wave"], "and its operation in FreeCAD's tree"
         screenshot("panel-line.png")
         panel.tabs.setCurrentWidget(panel.operations)
-        pump(0.2)
         item = panel.operations.topLevelItem(3)
-        place = panel.operations.visualItemRect(item).center()
-        click(panel.operations.viewport(), place.x(), place.y())
+        self.click_row(panel.operations, lambda: panel.operations.visualItemRect(item))
         self.settle(float(panel.session.listing.operation_begin[3]))
         assert [obj.Label for obj in Gui.Selection.getSelection()] == ["Holes"]
         item.setCheckState(0, QtCore.Qt.Unchecked)
@@ -312,17 +327,38 @@ class Watching(PanelTest):
         colour = image.pixelColor(int((x + 1) / 2 * image.width()), int((1 - y) / 2 * image.height()))
         return colour.red() > colour.blue() + 60
 
+    @contextlib.contextmanager
+    def kept_busy(self):
+        """The engine does something that ends with this."""
+        begun, go_on = threading.Event(), threading.Event()
+        self.panel.opening.call(lambda session, progress: (begun.set(), go_on.wait(60)), lambda result, error: None)
+        assert begun.wait(60)
+        try:
+            yield
+        finally:
+            go_on.set()
+
+    @contextlib.contextmanager
+    def told(self):
+        """Texts that the banner shows meanwhile."""
+        texts, banner = [], self.panel.banner
+        say = banner.say
+        banner.say = lambda kind, text, *how: (texts.append(text), say(kind, text, *how))
+        try:
+            yield texts
+        finally:
+            del banner.say
+
     def section(self):
         """Cut open by the button, the slider, the number, the other side; kept while it plays."""
         panel, row = self.panel, self.panel.section
-        key(panel.view, QtCore.Qt.Key_0, "0")
-        pump(0.5)
+        self.turn("0")
         panel.player.seek(panel.transport.end)
         whole = self.image()
         button = panel.tools.actions_by_name["section"]
         assert not button.isChecked() and row.isHidden(), "off at first"
         button.trigger()
-        self.redrawn()
+        self.settle()
         half = self.image()
         assert row.isVisible() and differing(whole.scaled(half.size()), half) > 0.05
         row.position.setValue(25.0)
@@ -336,7 +372,7 @@ class Watching(PanelTest):
         assert hit and abs(point[1] - 25) < view.camera.height / view.height(), point  # a pixel
         screenshot("panel-section.png")
         row.slider.setValue(0)
-        self.redrawn()
+        self.settle()
         assert row.position.value() == 0.0
         row.axis.setCurrentIndex(0)
         row.slider.setValue(500)
@@ -352,7 +388,7 @@ class Watching(PanelTest):
         row.slider.setValue(500)
         button.trigger()
         assert row.isHidden()
-        self.redrawn()
+        self.settle()
         assert differing(whole, self.image()) == 0, "closed again it is as before"
 
     def accuracy(self):
@@ -402,12 +438,28 @@ class Watching(PanelTest):
             assert differing(frames[0], frames[3]) > 0.02
             assert os.path.exists(os.path.join(folder, "swarf.mp4")) == (shutil.which("ffmpeg") is not None)
             assert folder in panel.banner.text.text(), panel.banner.text.text()
-            panel.files.save_animation(folder, 500, (320, 240))
-            wait_for(lambda: panel.banner.bar.value() > 5, "some frames")
+            panel.files.save_animation(folder, 20000, (320, 240))
+            wait_for(lambda: panel.banner.bar.value() > 0, "some frames")
             screenshot("panel-animation.png")
             panel.banner.action.click()
             wait_for(lambda: not panel.banner.working, "breaking off the animation")
             assert "ancelled" in panel.banner.text.text()
+            # before it is begun: the engine does something else
+            with self.kept_busy():
+                panel.files.save_animation(folder, 20000, (320, 240))
+                panel.banner.action.click()
+            wait_for(lambda: not panel.banner.working, "breaking off an animation that was not begun")
+            assert "ancelled" in panel.banner.text.text()
+            # nor does the end of one that was broken off by reading the job again say anything
+            panel.files.save_animation(folder, 20000, (320, 240))
+            wait_for(lambda: panel.banner.bar.value() > 0, "some frames")
+            with self.told() as texts:
+                panel.opening.reload()
+                self.opened()
+                wait_for(lambda: panel.opening.ended, "the first engine's end")
+                live()
+            assert len(texts) == 2 and not [text for text in texts if "ancelled" in text], texts
+            self.checked()
         self.settle(panel.transport.end)
         undo = document.UndoCount
         panel.files.keep_result()
@@ -418,7 +470,7 @@ class Watching(PanelTest):
         removed = obj.VolumeRemoved.Value
         document.undo()
         assert not [item for item in document.Objects if simulation.is_simulation(item)]
-        wait_for(lambda: not panel.opening._watch.comparing, "the undone result, which is no change")
+        self.compared()
         # an edit that nobody has compared yet: the old result must not be stored for the new job
         document.getObject("Wave").Path = samples.path_of("G0 Z5")
         assert not panel.opening._watch.differs

@@ -41,20 +41,26 @@ sys.excepthook = _record
 threading.excepthook = lambda arguments: _record(arguments.exc_type, arguments.exc_value, arguments.exc_traceback)
 
 
+def live():
+    """Let the GUI live for a moment."""
+    QtWidgets.QApplication.processEvents()
+    time.sleep(0.01)
+
+
 def pump(seconds):
-    """Let the GUI live."""
+    """Let the GUI live for a while. What is to come of it is waited for by wait_for(): how much comes in a while
+    depends on the machine."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
-        QtWidgets.QApplication.processEvents()
-        time.sleep(0.01)
+        live()
 
 
 def wait_for(condition, what):
-    """Let the GUI live until a condition holds."""
+    """Let the GUI live until a condition holds, and not a turn of the event loop longer."""
     end = time.monotonic() + WAIT_SECONDS
     while not condition():
         assert time.monotonic() < end, "timeout: " + what
-        pump(0.05)
+        live()
 
 
 def screenshot(name):

@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
-from gui_support import OUT, QtCore, QtWidgets, pump, screenshot, start, wait_for  # noqa: E402
+from gui_support import OUT, QtCore, QtWidgets, live, screenshot, start, wait_for  # noqa: E402
 from PySide import QtGui  # noqa: E402
 from panel_support import PanelTest, click, differing, drag, key, mouse, new_job  # noqa: E402
 
@@ -31,10 +31,7 @@ class Verifying(PanelTest):
                      if item.kind == "gouge" and listing.operations[item.operation].name == "Wave")
         assert tree.topLevelItem(index).text(1) == "Wave"
         assert {"gouge", "excess"} <= {item.kind for item in found}, [item.text for item in found]
-        pump(0.2)
-        place = tree.visualItemRect(tree.topLevelItem(index)).center()
-        click(tree.viewport(), place.x(), place.y())
-        pump(0.5)
+        self.click_row(tree, lambda: tree.visualItemRect(tree.topLevelItem(index)))
         self.settle(found[index].place)
         view = panel.view
         x, y, _ = view.camera.project(found[index].point, view.aspect())
@@ -70,8 +67,7 @@ class Verifying(PanelTest):
         assert panel.tabs.tabText(page).endswith("…")
         wait_for(lambda: not panel.checking.running, "checking again")
         assert panel.checking.found == found
-        key(view, QtCore.Qt.Key_0, "0")
-        pump(0.5)
+        self.turn("0")
 
     def accepting(self, document, job):
         """With a reason that is kept in the job, can be undone, and taken back."""
@@ -93,7 +89,7 @@ class Verifying(PanelTest):
         assert panel.tabs.tabText(panel.tabs.indexOf(page)) == "Findings (%d)" % (len(found) - 1)
         assert "the wave is wanted" in page.tree.topLevelItem(len(found) - 1).text(0)
         assert not any(mark[0] == taken[0].place for mark in panel.timeline._findings), "it is marked no more"
-        pump(1.0)
+        self.compared()
         assert panel.banner.isHidden(), "an acceptance is no change of the job: " + panel.banner.text.text()
         screenshot("panel-accepted.png")
         page.run.click()
@@ -124,12 +120,11 @@ class Verifying(PanelTest):
         """The stock, the model, one over the other."""
         panel, compared = self.panel, self.panel.tools.compared
         panel.player.seek(0)
-        key(panel.view, QtCore.Qt.Key_0, "0")
-        pump(0.5)
+        self.turn("0")
         pictures = {}
         for name in ("both", "design", "stock"):
             compared.setCurrentIndex(compared.findData(name))
-            self.redrawn()
+            self.settle()
             pictures[name] = self.image()
             screenshot("panel-shown-%s.png" % name)
         assert min(differing(pictures[a], pictures[b]) for a, b in (("both", "design"), ("both", "stock"),
@@ -137,11 +132,11 @@ class Verifying(PanelTest):
         compared.setCurrentIndex(compared.findData("both"))
         panel.tools.set_colouring("deviation")
         panel.player.seek(panel.transport.end)
-        self.redrawn()
+        self.settle()
         screenshot("panel-shown-deviation.png")
         assert panel.view.legend is not None
         compared.setCurrentIndex(compared.findData("design"))
-        self.redrawn()
+        self.settle()
         screenshot("panel-shown-design-deviation.png")
         told = {name: self.value_at(point) for name, point in (("facing", (60, 35, -1)), ("pocket", (25, 25, -5.2)))}
         assert abs(told["facing"]) < 0.02 and abs(told["pocket"] - 0.2) < 0.02, told
@@ -154,7 +149,7 @@ class Verifying(PanelTest):
         panel.banner.done()
         compared.setCurrentIndex(0)
         panel.tools.set_colouring("material")
-        self.redrawn()
+        self.settle()
 
     def value_at(self, point):
         """The deviation that the sharp picture tells at a point."""
@@ -170,7 +165,6 @@ class Verifying(PanelTest):
         panel.tabs.setCurrentWidget(page)
         place = panel.session.listing.operation_begin[1] - 1.5
         panel.player.seek(place)
-        pump(0.5)
         bare = self.image()
         Gui.Selection.clearSelection()
         page.add.click()
@@ -199,7 +193,6 @@ class Verifying(PanelTest):
         assert hits and {panel.session.listing.operations[item.operation].name for item in hits} == {"Facing"}, hits
         screenshot("panel-fixture.png")
         panel.checking.go_to(hits[0])
-        pump(0.5)
         self.settle(hits[0].place)
         assert hits[0].severity == "error"
         screenshot("panel-fixture-hit.png")
@@ -265,14 +258,16 @@ class Verifying(PanelTest):
         self.checked()
         assert self.settings.clearance() == 2.0
         # changed again just before the end of a check: that was made with the old one
+        from freecad.swarf_cam import checks
+
+        run, clearances = checks.run, []
+        checks.run = lambda *what: clearances.append(what[-1]) or run(*what)
         panel.findings.run.click()
-        worker = panel.checking._worker
-        worker.join(60)
+        panel.checking.join(60)
         page.clearance.setValue(0.0)
-        wait_for(lambda: panel.checking._worker is not worker, "the end of the check")
-        measured = panel.checking.outcome.verification.result
         self.checked()
-        assert panel.checking.outcome.verification.result is not measured, "judged, not checked"
+        checks.run = run
+        assert clearances == [2.0, 0.0], "judged, not checked"
 
     def typing(self, document, job):
         """Into the page while the job is read and cut: it stays, and nothing is told before it is finished."""
@@ -284,17 +279,15 @@ class Verifying(PanelTest):
         box = page.tools.itemWidget(page.tools.topLevelItem(1), 1)
         panel.activateWindow()
         box.lineEdit().setFocus()
-        pump(0.1)
         box.setEditText("SK4")
         undo = document.UndoCount
         wait_for(lambda: panel.session is not None, "opening")
-        pump(0.2)
         assert page.tools.itemWidget(page.tools.topLevelItem(1), 1) is box and box.currentText() == "SK4"
         assert document.UndoCount == undo
         # a page that must be filled again, for a tool has got another name
         job.Tools.Group[1].Tool.Label = "Other"
         panel.setting_up.show()
-        pump(0.2)
+        live()  # what is in the way goes
         box = page.tools.itemWidget(page.tools.topLevelItem(1), 1)
         assert page.tools.topLevelItem(1).text(0) == "T2 Other" and box.currentText() == ""
         assert not told, "what is half typed was taken for a holder: %s" % told
@@ -305,12 +298,11 @@ class Verifying(PanelTest):
         """Colours, legend, value under the mouse, pins, another tolerance."""
         panel, view = self.panel, self.panel.view
         panel.player.seek(panel.transport.end)
-        key(view, QtCore.Qt.Key_2, "2")
-        pump(0.5)
+        self.turn("2")
         self.settle()
         assert panel.tools.tolerance.isHidden()
         panel.tools.set_colouring("deviation")
-        self.redrawn()
+        self.settle()
         assert panel.tools.tolerance.isVisible()
 
         def pixel(point):
@@ -356,19 +348,18 @@ class Verifying(PanelTest):
         click(view, *pixel(floor))
         wait_for(lambda: panel.picking.found is not None, "the answer to a click")
         assert panel.findChild(QtWidgets.QLabel, "SwarfPoint-deviation").text() == "+0.200 mm"
+        measured = panel.checking.outcome.verification.result
         panel.tools.tolerance.setValue(0.3)
-        self.redrawn()
+        self.settle()
         wide = colour(floor)
         assert wide.green() >= wide.red(), "with a wider tolerance the pocket is well"
-        measured = panel.checking.outcome.verification.result
         self.checked()
         assert panel.checking.outcome.verification.result is measured, "nothing was cut or measured again"
         assert not [item for item in panel.checking.found if abs(abs(item.amount) - 0.2) < 0.01]
         application = QtWidgets.QApplication.instance()
         style = application.styleSheet()
         application.setStyleSheet("QWidget { background-color: #35393e; color: #f0f0f0 }")
-        key(view, QtCore.Qt.Key_0, "0")
-        pump(0.5)
+        self.turn("0")
         drag(view, QtCore.Qt.LeftButton, (120, 150), (180, 170))
         screenshot("panel-deviation-moving.png")
         self.settle()
@@ -379,14 +370,12 @@ class Verifying(PanelTest):
         application.setStyleSheet(style)
         panel.tools.open(False)
         assert panel.tools.colouring == "material" and view.legend is None, "without a model"
-        pump(0.2)
-        assert not panel.tools.compared.isVisible()
+        wait_for(lambda: not panel.tools.compared.isVisible(), "the choice without a model to go")
         panel.tools.open(True)
         panel.tools.tolerance.setValue(self.settings.TOLERANCE_MM)
         self.checked()
         self.settle()
-        key(view, QtCore.Qt.Key_0, "0")
-        pump(0.5)
+        self.turn("0")
 
 
 def check():

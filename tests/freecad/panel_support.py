@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import FreeCAD
 import FreeCADGui as Gui
-from gui_support import QtCore, QtWidgets, pump, wait_for
+from gui_support import QtCore, QtWidgets, live, pump, wait_for
 from PySide import QtGui
 
 
@@ -124,32 +124,43 @@ class PanelTest:
         found.click()
 
     def settle(self, place=None):
-        """Wait for the sharp picture, at a place."""
+        """Wait for the sharp picture of what is wanted, once the view turns no more; at a place."""
+        live()  # what was changed may have changed the size of the picture as well
+
         def there():
             frame = self.panel.view.frame
             camera = self.panel.view.camera
-            return (frame is not None and frame.sharp and (frame.width, frame.height) == self.panel.view.pixels()
+            return (not self.panel.view.turning and frame is not None and frame.sharp and (frame.width, frame.height) == self.panel.view.pixels()
                     and frame.place == self.panel.transport.wanted
                     and replace(frame.view, camera=None) == replace(self.panel.current_view(), camera=None)
                     and (frame.camera.eye, frame.camera.target, frame.camera.height) ==
                     (camera.eye, camera.target, camera.height) and (place is None or frame.place == place))
         wait_for(there, "a sharp picture at %s" % place)
 
-    def redrawn(self):
-        """Wait for another sharp picture than the last one: something else than camera and place has changed."""
-        self.panel.view.frame = None
-        pump(0.1)
-        self.settle()
-
     def image(self):
         """The sharp picture."""
         self.settle()
         return self.panel.view.image()
 
+    def turn(self, text):
+        """Press the key of a view, and wait until it is there."""
+        key(self.panel.view, getattr(QtCore.Qt, "Key_" + text.upper()), text)
+        wait_for(lambda: not self.panel.view.turning, "the turn to key " + text)
+
+    @staticmethod
+    def click_row(widget, place_of):
+        """Click on a row of a list that is shown; place_of() is its rectangle."""
+        wait_for(lambda: widget.isVisible() and widget.viewport().rect().contains(place_of().center()), "a row in sight")
+        click(widget.viewport(), place_of().center().x(), place_of().center().y())
+
     def opened(self):
         """Wait for a session other than the one that is open."""
         old = self.panel.session
         wait_for(lambda: self.panel.session not in (old, None), "opening again")
+
+    def compared(self):
+        """Wait until the panel knows whether the job differs from what was read."""
+        wait_for(lambda: not self.panel.opening.comparing, "comparing the job")
 
     def checked(self):
         """Wait for the end of the checks that are to come."""

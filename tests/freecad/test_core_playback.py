@@ -278,6 +278,24 @@ def test_a_late_picture_does_not_hide_a_stop(table):
     assert not player.playing
 
 
+def test_a_late_picture_does_not_move_who_pauses(table):
+    player = transport.Transport(Clock(table), {})
+    player.set_speed(transport.AS_FAST_AS_POSSIBLE)
+    for before, begin in ((player.end, 1.0), (0.0, 2.0)):
+        player.arrived(before)
+        player.seek(begin)
+        player.play()
+        player.set_speed(player.speed)
+        assert player.wanted == begin
+        player.pause()
+        assert player.wanted == begin and not player.playing
+    player.play()
+    player.tick(0.05)
+    player.arrived(5.0)
+    player.pause()
+    assert player.wanted == 5.0
+
+
 class Listener:
     """Keeps what an engine tells."""
 
@@ -315,11 +333,13 @@ class Cancelled(Exception):
 
 
 class FakeSession:
-    """Counts what the engine asks for; drawing sharp takes long, unless it is broken off."""
+    """Counts what the engine asks for. refining: set when it begins to draw sharp; endless: which then ends only by being
+    broken off."""
 
     def __init__(self):
         self.at, self.steps, self.broken_off = 0, 0, 0
         self.exact = []
+        self.refining, self.endless = threading.Event(), False
 
     def step(self, move, seconds, progress=None):
         if move == 13:
@@ -332,8 +352,9 @@ class FakeSession:
         if budget_ms is None and rays == 1:
             self.exact.append(place)
         elif budget_ms is None:
-            for _ in range(20):
-                threading.Event().wait(0.005)
+            self.refining.set()
+            while self.endless:
+                threading.Event().wait(0.001)
                 if progress(0):
                     self.broken_off += 1
                     raise Cancelled
@@ -367,14 +388,51 @@ def test_engine_goes_to_the_newest_wish_and_refines_it():
 
 def test_engine_breaks_off_refining_for_something_newer():
     session = FakeSession()
+    session.endless = True
     engine, listener = running(session)
-    for turn in itertools.count():
-        engine.wish(view=turn)
-        listener.wait(lambda: any(frame[0] == turn for frame in listener.frames))
-        threading.Event().wait(0.15)
-        if session.broken_off or turn > 40:
-            break
-    assert session.broken_off
+    engine.wish(view="first")
+    assert session.refining.wait(20)
+    engine.wish(view="second")
+    listener.wait(lambda: any(frame[0] == "second" for frame in listener.frames))
+    assert session.broken_off == 1
+    session.refining.clear()
+    assert session.refining.wait(20)
+    answers = []
+    engine.call(lambda session, progress: session.broken_off, lambda result, error: answers.append(result))
+    engine.wish(view="third")
+    listener.wait(lambda: any(frame[0] == "third" for frame in listener.frames))
+    assert answers == [2], "nor does a call wait for it"
+    session.endless = False
+    listener.wait(lambda: listener.frames[-1][0] == "third" and listener.frames[-1][2])
+    session.endless = True
+    session.refining.clear()
+    engine.wish(view="last")
+    assert session.refining.wait(20)
+    engine.stop()
+    assert engine.join(20) and session.broken_off >= 3 and not listener.errors
+
+
+def test_engine_breaks_off_the_call_that_is_meant():
+    session = FakeSession()
+    engine, listener = running(session)
+    begun, go_on, answers = threading.Event(), threading.Event(), []
+
+    def wait(name):
+        def function(_, progress):
+            begun.set()
+            assert go_on.wait(20)
+            if progress(0.5):
+                raise Cancelled
+            return name
+        return function
+    calls = [engine.call(wait(name), lambda result, error: answers.append(result or type(error))) for name in "abcd"]
+    assert begun.wait(20)
+    calls[0].cancel()
+    calls[2].cancel()  # not begun yet
+    go_on.set()
+    engine.wish(view="view")
+    listener.wait(lambda: listener.frames)
+    assert answers == [Cancelled, "b", Cancelled, "d"]
     engine.stop()
     assert engine.join(20)
 

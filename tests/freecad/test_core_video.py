@@ -26,13 +26,19 @@ def make(folder, body):
 
 
 def test_progress_and_the_whole_file(tmp_path):
-    told = []
-    encoder = make(tmp_path, 'for n in 1 5 10; do echo frame=$n >>"$told"; sleep 0.25; done; echo video >"$1"')
+    told, seen = [], tmp_path / "seen"
+    encoder = make(tmp_path, 'for n in 1 5 10; do echo frame=$n >>"$told"; '
+                             'while [ $n = 5 -a ! -e "%s" ]; do sleep 0.01; done; done; echo video >"$1"' % seen)
+
+    def report(done):
+        told.append(done)
+        if done == 0.5:
+            seen.touch()
     target = str(tmp_path / "swarf.mp4")
-    assert video.encode(encoder, str(tmp_path), target, 25, 10, lambda done: False, told.append)
+    assert video.encode(encoder, str(tmp_path), target, 25, 10, lambda done: False, report)
     assert (tmp_path / "swarf.mp4").read_text() == "video\n"
     assert told == sorted(told) and 0.5 in told and told[-1] <= 1.0
-    assert sorted(os.listdir(tmp_path)) == ["ffmpeg", "swarf.mp4"]
+    assert sorted(os.listdir(tmp_path)) == ["ffmpeg", "seen", "swarf.mp4"]
 
 
 def test_broken_off_nothing_is_left(tmp_path):

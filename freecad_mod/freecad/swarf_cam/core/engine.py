@@ -25,6 +25,18 @@ REST_SECONDS = 0.12
 RAYS_AT_REST = (1, 3)
 
 
+class Call:
+    """Something to be done once by the engine's thread; see Engine.call()."""
+
+    def __init__(self, function, on_result):
+        self.function, self.on_result = function, on_result
+        self.cancelled = False
+
+    def cancel(self):
+        """Break it off, or do not begin it. Any thread."""
+        self.cancelled = True
+
+
 class Engine:
     """open_session(progress) -> the session that cuts and draws; listener has opened(session), frame(frame),
     progress(fraction), failed(error) and finished(), which comes last.
@@ -57,13 +69,15 @@ class Engine:
             self._changed.notify()
 
     def call(self, function, on_result):
-        """Do function(session, progress) in turn; on_result(result, error) is called in the engine's thread."""
+        """Do function(session, progress) in turn; on_result(result, error) is called in the engine's thread -> Call."""
+        made = Call(function, on_result)
         with self._changed:
-            self._calls.append((function, on_result))
+            self._calls.append(made)
             self._changed.notify()
+        return made
 
     def cancel(self):
-        """Break off opening, or the call that is being done."""
+        """Break off opening."""
         self._cancelling = True
 
     def stop(self):
@@ -107,7 +121,7 @@ class Engine:
                 call = self._calls.popleft() if self._calls else None
                 revision, place, view = self._revision, self._place, self._view
             if call:
-                self._do(session, *call)
+                self._do(session, call)
                 continue
             if revision == drawn and rest == 0 and self._wait_for_rest(revision):
                 continue
@@ -147,11 +161,12 @@ class Engine:
                 self._changed.wait(left)
         return True
 
-    def _do(self, session, function, on_result):
-        self._cancelling = False
+    def _do(self, session, call):
         try:
-            result = function(session, lambda _: self._stopping or self._cancelling)
+            if call.cancelled:
+                raise self._cancelled_type
+            result = call.function(session, lambda _: self._stopping or call.cancelled)
         except Exception as error:
-            on_result(None, error)
+            call.on_result(None, error)
         else:
-            on_result(result, None)
+            call.on_result(result, None)

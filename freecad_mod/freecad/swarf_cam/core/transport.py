@@ -51,7 +51,11 @@ class Transport:
     def pause(self):
         """Stand where the cutting is."""
         if self.playing:
-            self.seek(self.at)
+            self.seek(self._reached())
+
+    def _reached(self):
+        """How far playing has come: at may be of a picture from before it began."""
+        return min(max(self.at, self._passed), self.wanted)
 
     def seek(self, place):
         """Stop, and go to a place."""
@@ -95,8 +99,8 @@ class Transport:
         """Times as fast as the machine, or AS_FAST_AS_POSSIBLE."""
         self.speed = speed
         if self.playing:  # what was wanted at the old speed is not wanted any more
-            self.wanted = self.at
-            self._time = self.clock.time_of(self.at)
+            self.wanted = self._reached()
+            self._time = self.clock.time_of(self.wanted)
 
     def faster(self, steps):
         """The speed so many steps up or down the list from this one."""

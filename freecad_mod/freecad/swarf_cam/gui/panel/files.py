@@ -42,9 +42,9 @@ class Files:
         if panel.session is None:
             return
         view, place = panel.current_view(), panel.transport.at
-        panel.banner.work(translate("Swarf", "Drawing ..."), panel.opening.cancel_call)
-        panel.opening.call(lambda session, progress: session.write_png(path, view, place, progress),
-                   lambda _, error: self._written(path, error))
+        call = panel.opening.call(lambda session, progress: session.write_png(path, view, place, progress),
+                                  lambda _, error: self._written(path, error))
+        panel.banner.work(translate("Swarf", "Drawing ..."), call.cancel)
 
     def ask_animation(self):
         """Save an animation where the user says."""
@@ -60,10 +60,10 @@ class Files:
         panel.player.seek(panel.transport.at)
         view, report = panel.current_view(size), export.Report(panel)
         report.came.connect(panel.banner.progress, QtCore.Qt.QueuedConnection)
-        panel.banner.work(translate("Swarf", "Drawing the animation ..."), panel.opening.cancel_call)
-        panel.opening.call(
+        call = panel.opening.call(
             lambda session, progress: export.write_animation(session, progress, folder, view, count, report),
             self._written)
+        panel.banner.work(translate("Swarf", "Drawing the animation ..."), call.cancel)
 
     def _written(self, path, error):
         panel = self._panel

@@ -42,6 +42,11 @@ class Opening:
         return not self._old_engines
 
     @property
+    def comparing(self):
+        """Whether something changed of which is not known yet whether the job differs by it."""
+        return self._watch is not None and self._watch.comparing
+
+    @property
     def known_hashes(self):
         """Hashes of the job's paths that have not changed since it was read, None when the job did change, or may have."""
         watch = self._watch
@@ -155,13 +160,11 @@ class Opening:
             self._engine.wish(place, view)
 
     def call(self, function, on_result):
-        """Do function(session, progress) in the engine's thread; on_result(result, error) follows in this one."""
-        self._engine.call(function, self._bridge.answer_to(on_result))
-
-    def cancel_call(self):
-        """Break off what call() does."""
-        if self._engine is not None:
-            self._engine.cancel()
+        """Do function(session, progress) in the engine's thread; on_result(result, error) follows in this one, unless
+        the job was closed meanwhile -> core.engine.Call."""
+        tag = self._tag
+        return self._engine.call(function, self._bridge.answer_to(
+            lambda result, error: on_result(result, error) if tag == self._tag else None))
 
     # Closing
 

@@ -23,18 +23,14 @@ class Picking:
         self._panel.inspector.show_values(None)
 
     def pick(self, x, y):
-        """Tell what made the point at a place of the picture."""
-        panel = self._panel
-        if panel.session is None or panel.view.camera is None:
-            return
-        view, place, asked = panel.current_view(), panel.transport.at, panel.session
-        panel.opening.call(lambda session, progress: session.pick(view, x, y, place),
-                   lambda found, error: self._answered(asked, found, error))
+        """Tell what made the point at a place of the picture, as it is seen."""
+        frame = self._panel.view.frame
+        if self._panel.session is not None and frame is not None:
+            self._panel.opening.call(
+                lambda session, progress: session.pick(frame.view, x, y, frame.place), self._answered)
 
-    def _answered(self, asked, found, error):
+    def _answered(self, found, error):
         panel = self._panel
-        if panel.session is not asked:  # the job was closed or read again meanwhile
-            return
         if error is not None:
             panel.fail(error)
             return

@@ -79,7 +79,7 @@ class PictureView(QtWidgets.QWidget):
         """Keep the last picture, steer no more."""
         self.camera = self.mark = None
         self.caption, self.pins = ("", "", None), []
-        self._timer.stop()
+        self._stop_turning()
         self.update()
 
     def set_mark(self, point):
@@ -142,7 +142,9 @@ class PictureView(QtWidgets.QWidget):
         """The point seen at a pixel; as deep as the middle of the part where nothing is."""
         px, py = self._place(x, y)
         depth = self.depth_under(x, y)
-        return navigation.point_at(self.camera, px, py, self.aspect(), depth), math.isfinite(depth)
+        hit = math.isfinite(depth)
+        camera = self.frame.camera if hit else self.camera  # what is seen may be of before the last turn
+        return navigation.point_at(camera, px, py, self.aspect(), depth), hit
 
     def depth_under(self, x, y):
         """mm along the view to what is seen at a pixel, inf for nothing."""
@@ -154,10 +156,19 @@ class PictureView(QtWidgets.QWidget):
         self.camera_changed.emit()
         self.update()
 
+    @property
+    def turning(self):
+        """Whether the view is on its way to another."""
+        return self._turn is not None
+
+    def _heading(self):
+        """A copy of the camera as it is, or will be when the view has turned."""
+        return (self.camera if self._turn is None else self._turn[1]).copy()
+
     def fit(self):
         """The whole stock, from where one looks."""
         if self.camera is not None:
-            target = self.camera.copy()
+            target = self._heading()
             target.fit(self.box, self.aspect())
             target.zoom(0.9)
             self._turn_to(target)
@@ -172,14 +183,15 @@ class PictureView(QtWidgets.QWidget):
     def fly_to(self, point):
         """Bring a point near, to the middle."""
         if self.camera is not None:
-            target = self.camera.copy()
+            target = self._heading()
             navigation.approach(target, point, self.aspect(), NEAR_SHARE * math.dist(*self.box))
             self._turn_to(target)
 
     def set_perspective(self, on):
         """Perspective or parallel rays."""
         if self.camera is not None and self.camera.perspective != bool(on):
-            self.camera.set_perspective(bool(on))
+            for camera in (self.camera, *(self._turn[:2] if self.turning else ())):
+                camera.set_perspective(bool(on))
             self._changed()
 
     def _turn_to(self, camera):
@@ -280,7 +292,7 @@ class PictureView(QtWidgets.QWidget):
         x, y = place_of(event)
         point, hit = self.point_under(x, y)
         if hit:
-            target = self.camera.copy()
+            target = self._heading()
             navigation.centre(target, point, self.aspect())
             self._turn_to(target)
 
@@ -315,10 +327,12 @@ class PictureView(QtWidgets.QWidget):
         elif text in "fFvV" and text:
             self.fit()
         elif text and text in "+-":
+            self._stop_turning()
             self.camera.zoom(navigation.WHEEL_FACTOR ** (1 if text == "+" else -1))
             self._changed()
         elif event.key() in arrows and event.modifiers() & qt.ShiftModifier:
             right, up = arrows[event.key()]
+            self._stop_turning()
             self.camera.orbit(self.camera.target, right * navigation.KEY_DEGREES, up * navigation.KEY_DEGREES)
             self._changed()
         else:
