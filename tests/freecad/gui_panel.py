@@ -248,6 +248,8 @@ class Watching(PanelTest):
         panel.tools.set_colouring("material")
         panel.setFloating(False)
         Gui.setLocale("de")
+        locale = QtCore.QLocale()
+        self.write_numbers(QtCore.QLocale("de"))
         german = dock.LivePanel(Gui.getMainWindow())
         german.setObjectName("SwarfGerman")
         Gui.getMainWindow().addDockWidget(QtCore.Qt.RightDockWidgetArea, german)
@@ -261,14 +263,34 @@ class Watching(PanelTest):
         german.raise_()
         wait_for(lambda: german.view.frame is not None and german.view.frame.sharp, "the second panel's picture")
         screenshot("panel-german.png")
+        self.check_numbers(german)
         assert german.width() < 800, "the dock takes too much of a small screen: %d" % german.width()
         german.close()
         wait_for(lambda: german.opening.ended, "the second panel's end")
         Gui.getMainWindow().removeDockWidget(german)
         german.deleteLater()
         Gui.setLocale("en")
+        self.write_numbers(locale)
         panel.raise_()
         self.settle()
+
+    @staticmethod
+    def write_numbers(locale):
+        """As FreeCAD does when the user chooses how numbers are written."""
+        QtCore.QLocale.setDefault(locale)
+        Gui.getMainWindow().setLocale(locale)
+
+    @staticmethod
+    def check_numbers(german):
+        """They have commas, in labels as in spin boxes."""
+        from freecad.swarf_cam.gui import numbers
+
+        assert [numbers.text(-0.0001, 3, True), numbers.text(1234.5, 1), numbers.short(-0.2, True)] == \
+            ["+0,000", "1234,5", "-0,2"]
+        assert [numbers.count(1234567), numbers.size(4.2e9), numbers.size(1234)] == ["1.234.567", "4,2 GB", "0,00 MB"]
+        assert german.accuracy.voxel.text() == "0,2000 mm"
+        assert "60,00 cm³" in german.accuracy.outcome.text() and "." not in german.accuracy.estimate.text()
+        assert german.operations.topLevelItem(0).text(3).endswith(" cm³") and "," in german.operations.topLevelItem(0).text(3)
 
     def clicking(self, document):
         """From the stock to the line, and from the line to the stock."""

@@ -242,7 +242,7 @@ def test_the_legend_spans_four_tolerances(tolerance):
     assert legend.share_of(99 * tolerance, tolerance) == 1.0 and legend.share_of(-99 * tolerance, tolerance) == 0.0
     marks = legend.ticks(tolerance)
     assert [share for share, _ in marks] == sorted((share for share, _ in marks), reverse=True)
-    assert all(float(text) == pytest.approx(legend.value_at(share, tolerance)) for share, text in marks)
+    assert all(value == pytest.approx(legend.value_at(share, tolerance)) for share, value in marks)
 
 
 def test_a_tinted_frame_holds_the_deviations(swarf):

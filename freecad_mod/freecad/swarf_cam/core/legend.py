@@ -17,11 +17,6 @@ def share_of(value, tolerance_mm):
     return min(max((value / (TOLERANCES * tolerance_mm) + 1) / 2, 0.0), 1.0)
 
 
-def text_of(value):
-    """A deviation for people, to the micrometre."""
-    return "%+.3f" % value
-
-
 def ticks(tolerance_mm):
-    """(share, text) of the marks, from the top."""
-    return [(share_of(mark * tolerance_mm, tolerance_mm), "%+.3g" % (mark * tolerance_mm)) for mark in MARKS]
+    """(share, value) of the marks, from the top."""
+    return [(share_of(mark * tolerance_mm, tolerance_mm), mark * tolerance_mm) for mark in MARKS]

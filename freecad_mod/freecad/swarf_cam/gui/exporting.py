@@ -9,7 +9,7 @@ import FreeCADGui as Gui
 from .. import native
 from ..app import model
 from ..core.errors import JobError
-from . import settings
+from . import numbers, settings
 from .qt import QtWidgets, choice
 from .slices import Slices
 from .taskpanel import TaskPanel
@@ -78,9 +78,9 @@ class ExportPanel(TaskPanel):
         self.allowance.setEnabled(self.chosen_colour == "deviation")
         triangles, size = model.estimate(self.obj, self.suffix, self.error.value(), self.chosen_colour is not None)
         if mesh:
-            text = translate("Swarf", "about {0:,} triangles, {1:.2f} MB").format(triangles, size / 1e6)
+            text = translate("Swarf", "about {0} triangles, {1}").format(numbers.count(triangles), numbers.size(size))
         else:
-            text = translate("Swarf", "{0:.2f} MB").format(size / 1e6)
+            text = numbers.size(size)
         if self.suffix in model.SHAPE_SUFFIXES and triangles > model.SHAPE_TRIANGLES_MAX:
             text += translate(
                 "Swarf", "; too many for flat facets: a shape only if all its faces are planes, cylinders, cones, spheres and tori")
@@ -139,8 +139,8 @@ class ExportPanel(TaskPanel):
         except (JobError, OSError, RuntimeError, ValueError, MemoryError, native.load().Error) as problem:
             self.fail(problem)
             return
-        FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: written: {0}, {1:.2f} MB\n").format(
-            self.made.path, os.path.getsize(self.made.path) / 1e6))
+        FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: written: {0}, {1}\n").format(
+            self.made.path, numbers.size(os.path.getsize(self.made.path))))
         self.close()
 
 

@@ -9,6 +9,7 @@ import FreeCADGui as Gui
 from .. import native
 from ..app import setups, simulation
 from ..core.errors import JobError
+from . import numbers
 from .qt import QtWidgets, choice
 from .slices import Slices
 from .taskpanel import TaskPanel
@@ -29,7 +30,8 @@ def describe_estimate(job, voxel_mm):
     except (JobError, ValueError, MemoryError, OverflowError) as error:
         return str(error)
     cells = max(b - a for a, b in zip(lo, hi)) / voxel_mm
-    return translate("Swarf", "{0:.0f} voxels along the longest edge, up to {1:.0f} MB").format(cells, needed / 1e6)
+    return translate("Swarf", "{0} voxels along the longest edge, up to {1}").format(
+        numbers.count(round(cells)), numbers.size(needed))
 
 
 class StockChoice:
@@ -184,8 +186,8 @@ class SimulationPanel(TaskPanel):
         except BaseException as error:
             self.fail(error)
             raise
-        FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: {0}: {1:.1f} mm^3 removed in {2:.1f} s\n").format(
-            obj.Label, result.volume_initial - result.volume_final, result.seconds))
+        FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: {0}: {1} mm^3 removed in {2} s\n").format(
+            obj.Label, numbers.text(result.volume_initial - result.volume_final, 1), numbers.text(result.seconds, 1)))
         self.close()
 
 

@@ -107,8 +107,8 @@
     <context>
         <name>Swarf</name>
         <message>
-            <source>, about {0:.1f} s to cut once</source>
-            <translation>, etwa {0:.1f} s für einmal Zerspanen</translation>
+            <source>, about {0} s to cut once</source>
+            <translation>, etwa {0} s für einmal Zerspanen</translation>
         </message>
         <message>
             <source>98 % lie within</source>
@@ -691,8 +691,8 @@
             <translation>Rohteil</translation>
         </message>
         <message>
-            <source>Stock {0:.2f} cm³, removed {1:.2f} cm³, left {2:.2f} cm³</source>
-            <translation>Rohteil {0:.2f} cm³, abgetragen {1:.2f} cm³, übrig {2:.2f} cm³</translation>
+            <source>Stock {0} cm³, removed {1} cm³, left {2} cm³</source>
+            <translation>Rohteil {0} cm³, abgetragen {1} cm³, übrig {2} cm³</translation>
         </message>
         <message>
             <source>Stop at every operation</source>
@@ -743,15 +743,15 @@
 </translation>
         </message>
         <message>
-            <source>Swarf: written: {0}, {1:.2f} MB
+            <source>Swarf: written: {0}, {1}
 </source>
-            <translation>Swarf: geschrieben: {0}, {1:.2f} MB
+            <translation>Swarf: geschrieben: {0}, {1}
 </translation>
         </message>
         <message>
-            <source>Swarf: {0}: {1:.1f} mm^3 removed in {2:.1f} s
+            <source>Swarf: {0}: {1} mm^3 removed in {2} s
 </source>
-            <translation>Swarf: {0}: {1:.1f} mm^3 in {2:.1f} s abgetragen
+            <translation>Swarf: {0}: {1} mm^3 in {2} s abgetragen
 </translation>
         </message>
         <message>
@@ -883,8 +883,8 @@
             <translation>Geschrieben: {0}</translation>
         </message>
         <message>
-            <source>about {0:,} triangles, {1:.2f} MB</source>
-            <translation>etwa {0:,} Dreiecke, {1:.2f} MB</translation>
+            <source>about {0} triangles, {1}</source>
+            <translation>etwa {0} Dreiecke, {1}</translation>
         </message>
         <message>
             <source>as before</source>
@@ -951,28 +951,8 @@
             <translation>wo es war</translation>
         </message>
         <message>
-            <source>{0:+.3f} mm</source>
-            <translation>{0:+.3f} mm</translation>
-        </message>
-        <message>
-            <source>{0:.0f} voxels along the longest edge, up to {1:.0f} MB</source>
-            <translation>{0:.0f} Voxel entlang der längsten Kante, bis zu {1:.0f} MB</translation>
-        </message>
-        <message>
-            <source>{0:.0f} voxels along the longest edge, up to {1}</source>
-            <translation>{0:.0f} Voxel entlang der längsten Kante, bis zu {1}</translation>
-        </message>
-        <message>
-            <source>{0:.2f} MB</source>
-            <translation>{0:.2f} MB</translation>
-        </message>
-        <message>
-            <source>{0:.2f} cm³</source>
-            <translation>{0:.2f} cm³</translation>
-        </message>
-        <message>
-            <source>{0:.3f} mm</source>
-            <translation>{0:.3f} mm</translation>
+            <source>{0} voxels along the longest edge, up to {1}</source>
+            <translation>{0} Voxel entlang der längsten Kante, bis zu {1}</translation>
         </message>
     </context>
     <context>

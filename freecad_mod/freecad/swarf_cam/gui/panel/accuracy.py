@@ -4,16 +4,12 @@
 import FreeCAD
 
 from ... import native
+from .. import numbers
 from ..qt import QtCore, QtWidgets
 
 translate = FreeCAD.Qt.translate
 
 VOXEL_MAX_MM, VOXEL_DECIMALS = 100.0, 4
-
-
-def bytes_text(count):
-    """Bytes for people."""
-    return "%.1f GB" % (count / 1e9) if count >= 1e9 else "%.0f MB" % (count / 1e6)
 
 
 class Accuracy(QtWidgets.QWidget):
@@ -58,9 +54,8 @@ class Accuracy(QtWidgets.QWidget):
         """What opening took at the size in use, and what came out."""
         self._measured = session.voxel_mm, seconds
         overview = session.overview
-        lines = [translate("Swarf", "Stock {0:.2f} cm³, removed {1:.2f} cm³, left {2:.2f} cm³").format(
-            overview.volume_initial / 1000, (overview.volume_initial - overview.volume_final) / 1000,
-            overview.volume_final / 1000)]
+        lines = [translate("Swarf", "Stock {0} cm³, removed {1} cm³, left {2} cm³").format(*(numbers.text(volume / 1000, 2) for volume in (
+            overview.volume_initial, overview.volume_initial - overview.volume_final, overview.volume_final)))]
         lines += ["%s: %s" % (severity, text) for _, severity, text in overview.findings]
         lines += list(session.data.notes)
         self.outcome.setText("\n".join(lines))
@@ -79,9 +74,10 @@ class Accuracy(QtWidgets.QWidget):
             return
         self.apply.setEnabled(True)
         cells = max(b - a for a, b in zip(*self._box)) / voxel
-        text = translate("Swarf", "{0:.0f} voxels along the longest edge, up to {1}").format(cells, bytes_text(needed))
+        text = translate("Swarf", "{0} voxels along the longest edge, up to {1}").format(
+            numbers.count(round(cells)), numbers.size(needed))
         if self._measured is not None:
             # A level set is a surface: four times the work for half the voxel.
             seconds = self._measured[1] * (self._measured[0] / voxel) ** 2
-            text += translate("Swarf", ", about {0:.1f} s to cut once").format(seconds)
+            text += translate("Swarf", ", about {0} s to cut once").format(numbers.text(seconds, 1))
         self.estimate.setText(text)

@@ -6,7 +6,7 @@ import math
 import FreeCAD
 
 from ...core import histogram, legend
-from .. import colours
+from .. import colours, numbers
 from ..qt import QtCore, QtGui, QtWidgets, place_of
 
 translate = FreeCAD.Qt.translate
@@ -76,7 +76,8 @@ class Bars(QtWidgets.QWidget):
         font.setPixelSize(11)
         painter.setFont(font)
         metrics, free = QtGui.QFontMetricsF(font), frame.right() + MARGIN
-        for share, text in [*legend.ticks(self._shown.tolerance_mm), (0.5, "0")]:
+        ticks = [(share, numbers.short(value, True)) for share, value in legend.ticks(self._shown.tolerance_mm)]
+        for share, text in [*ticks, (0.5, "0")]:
             x = frame.left() + share * frame.width()
             painter.drawLine(QtCore.QLineF(x, frame.bottom(), x, frame.bottom() + 3))
             if abs(abs(share - 0.5) - 0.5 / legend.TOLERANCES) < 1e-9:
@@ -100,14 +101,14 @@ class Bars(QtWidgets.QWidget):
             self.setToolTip("")
             return
         lower, upper = self._shown.bounds(index)
-        text = "%s … %s mm" % (legend.text_of(lower) if math.isfinite(lower) else "",
-                               legend.text_of(upper) if math.isfinite(upper) else "")
+        text = "%s … %s mm" % (numbers.deviation(lower) if math.isfinite(lower) else "",
+                               numbers.deviation(upper) if math.isfinite(upper) else "")
         self.setToolTip("%s: %s" % (text, area_text(self._shown.areas[index])))
 
 
 def area_text(area):
     """An area for people."""
-    return "%.1f cm²" % (area / 100) if area >= 1000 else "%.1f mm²" % area
+    return numbers.text(area / 100, 1) + " cm²" if area >= 1000 else numbers.text(area, 1) + " mm²"
 
 
 class DeviationPage(QtWidgets.QWidget):
@@ -147,11 +148,12 @@ class DeviationPage(QtWidgets.QWidget):
         volumes = deviation.comparison
         for name, text in (
                 ("verdict", translate("Swarf", "passed") if made.passed else translate("Swarf", "FAILED")),
-                ("good", "%s (%.2f %%)" % (area_text(good), 100 * good / deviation.area if deviation.area else 0.0)),
-                ("excess", "%s, %.1f mm³" % (area_text(deviation.excess_area), volumes.excess_mm3)),
-                ("gouge", "%s, %.1f mm³" % (area_text(deviation.gouge_area), volumes.gouge_mm3)),
+                ("good", "%s (%s %%)" % (
+                    area_text(good), numbers.text(100 * good / deviation.area if deviation.area else 0.0, 2))),
+                ("excess", "%s, %s mm³" % (area_text(deviation.excess_area), numbers.text(volumes.excess_mm3, 1))),
+                ("gouge", "%s, %s mm³" % (area_text(deviation.gouge_area), numbers.text(volumes.gouge_mm3, 1))),
                 ("unreached", area_text(deviation.not_reached_area)),
-                ("range", "%s … %s mm" % (legend.text_of(deviation.least), legend.text_of(deviation.most))),
-                ("middle", "%s … %s mm" % (legend.text_of(low), legend.text_of(high))),
-                ("mean", "%s mm, %.3f mm" % (legend.text_of(deviation.mean), deviation.rms))):
+                ("range", "%s … %s mm" % (numbers.deviation(deviation.least), numbers.deviation(deviation.most))),
+                ("middle", "%s … %s mm" % (numbers.deviation(low), numbers.deviation(high))),
+                ("mean", "%s mm, %s mm" % (numbers.deviation(deviation.mean), numbers.text(deviation.rms, 3)))):
             self._values[name].setText(text)

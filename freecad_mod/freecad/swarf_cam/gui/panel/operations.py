@@ -4,7 +4,7 @@
 import FreeCAD
 
 from ...core import clock as clocks
-from .. import colours
+from .. import colours, numbers
 from ..qt import QtCore, QtGui, QtWidgets, flags
 
 translate = FreeCAD.Qt.translate
@@ -38,7 +38,7 @@ class OperationList(QtWidgets.QTreeWidget):
                 seconds = session.clock.time_of(begins[index + 1]) - session.clock.time_of(begins[index])
                 removed = session.overview.removed[index]
                 item = QtWidgets.QTreeWidgetItem([operation.name, "T%d" % operation.tool, clocks.text_of(seconds),
-                                                  translate("Swarf", "{0:.2f} cm³").format(removed / 1000)])
+                                                  numbers.text(removed / 1000, 2) + " cm³"])
                 item.setCheckState(0, QtCore.Qt.Checked if visible[index] else QtCore.Qt.Unchecked)
                 item.setIcon(0, self._chip(index))
                 item.setToolTip(1, session.data.tools.get(operation.tool, ("",))[0])

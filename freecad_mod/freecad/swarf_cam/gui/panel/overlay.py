@@ -6,7 +6,7 @@ import math
 import FreeCAD
 
 from ...core import legend, viewcube
-from .. import colours
+from .. import colours, numbers
 from ..qt import QtCore, QtGui
 
 translate = FreeCAD.Qt.translate
@@ -149,7 +149,7 @@ class Legend:
         font = QtGui.QFont(view.font())
         font.setPixelSize(11)
         metrics = QtGui.QFontMetricsF(font)
-        ticks = legend.ticks(self.tolerance_mm)
+        ticks = [(share, numbers.short(value, True)) for share, value in legend.ticks(self.tolerance_mm)]
         room = max(metrics.boundingRect(text).width() for _, text in ticks) + 4
         left, top = view.width() - LEGEND_WIDTH - room - 20, 2 * CUBE_MARGIN + 22
         bar = QtCore.QRectF(left, top, LEGEND_WIDTH, height)
@@ -172,7 +172,7 @@ class Legend:
     def _paint_hand(self, view, painter, bar, ink, dark):
         """The value under the mouse, left of the bar."""
         y = bar.top() + (1 - legend.share_of(view.hover, self.tolerance_mm)) * bar.height()
-        text = legend.text_of(view.hover)
+        text = numbers.deviation(view.hover)
         width = QtGui.QFontMetricsF(painter.font()).boundingRect(text).width() + 12
         plate = QtCore.QRectF(bar.left() - width - 16, y - 9, width, 18)
         painter.setPen(QtCore.Qt.NoPen)

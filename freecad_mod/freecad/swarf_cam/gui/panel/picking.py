@@ -6,6 +6,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ...core import clock as clocks
+from .. import numbers
 
 translate = FreeCAD.Qt.translate
 
@@ -50,11 +51,11 @@ class Picking:
     @staticmethod
     def _values(session, found):
         """Texts of the inspector's rows."""
-        values = {"point": "X %.3f  Y %.3f  Z %.3f" % found.point,
-                  "depth": translate("Swarf", "{0:.3f} mm").format(found.depth_below_top),
-                  "slope": "%.1f°" % found.slope_deg, "hint": ""}
+        values = {"point": "X %s  Y %s  Z %s" % tuple(numbers.text(value, 3) for value in found.point),
+                  "depth": numbers.text(found.depth_below_top, 3) + " mm",
+                  "slope": numbers.text(found.slope_deg, 1) + "°", "hint": ""}
         if found.deviation is not None:
-            values["deviation"] = translate("Swarf", "{0:+.3f} mm").format(round(found.deviation, 3) + 0.0)
+            values["deviation"] = numbers.deviation(found.deviation) + " mm"
         if found.move < 0:
             values["hint"] = translate("Swarf", "The stock as it was: nothing was cut here yet.")
         else:

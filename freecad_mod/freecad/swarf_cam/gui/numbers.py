@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Numbers for people, written as the user's locale has them: as FreeCAD's spin boxes show what they hold. G-code, files
+and what the native module says keep the decimal point."""
+
+from .qt import QtCore
+
+
+def _locale():
+    locale = QtCore.QLocale()
+    locale.setNumberOptions(QtCore.QLocale.OmitGroupSeparator)
+    return locale
+
+
+def text(value, decimals, signed=False):
+    """A number with so many decimals; signed: with its sign, also where that is a plus."""
+    rounded = round(value, decimals) + 0.0  # no minus before zeros
+    return ("+" if signed and rounded >= 0 else "") + _locale().toString(float(rounded), "f", decimals)
+
+
+def short(value, signed=False):
+    """A number with at most three digits that count."""
+    return ("+" if signed and value >= 0 else "") + _locale().toString(float(value), "g", 3)
+
+
+def count(value):
+    """A number of things, in groups of digits where the locale has such."""
+    return QtCore.QLocale().toString(int(value))
+
+
+def deviation(value):
+    """A deviation in mm, to the micrometre."""
+    return text(value, 3, True)
+
+
+def size(count_of_bytes):
+    """Bytes, at least a hundredth of a megabyte of them."""
+    if count_of_bytes >= 1e9:
+        return text(count_of_bytes / 1e9, 1) + " GB"
+    return text(count_of_bytes / 1e6, 0 if count_of_bytes >= 1e7 else 2) + " MB"
