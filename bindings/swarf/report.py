@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from typing import Any, Optional
 
 from . import _native, loads, parts, timing
+from .files import write_text
 from .job import Job
 from .simulate import Result
 from .verify import Verification, operation_of
@@ -99,6 +98,7 @@ def make(
         "memory_peak_mb": round(_native.memory_peak() / 1e6, 3),
         "bounding_box": None if box is None else {"lo": list(box[0]), "hi": list(box[1])},
         "mesh": _mesh(result),
+        "solids": [{"file": solid.path, "faces": solid.faces, "facets_because": solid.reason} for solid in result.solids],
         "findings": _findings(names, simulation),
         "notes": list(job.notes),
         "loose_pieces": [
@@ -234,26 +234,3 @@ def summary(report: dict[str, Any]) -> str:
 def write(report: dict[str, Any], path: str) -> None:
     """Write a report as JSON, beside the target and renamed, so that a failure loses nothing. OSError."""
     write_text(json.dumps(report, indent=2, allow_nan=False) + "\n", path)
-
-
-def write_text(text: str, path: str) -> None:
-    """Write a text, beside the target and renamed, so that a failure loses nothing. OSError."""
-    try:
-        _write(text, path)
-    except OSError as error:
-        raise OSError(f"{path}: cannot write: {error.strerror or error}") from None
-
-
-def _write(text: str, path: str) -> None:
-    folder = os.path.dirname(os.path.abspath(path))
-    handle, temporary = tempfile.mkstemp(dir=folder, prefix=".swarf-")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        umask = os.umask(0)  # mkstemp makes private files; a report is an ordinary one
-        os.umask(umask)
-        os.chmod(temporary, 0o666 & ~umask)
-        os.replace(temporary, path)
-    except BaseException:
-        os.unlink(temporary)
-        raise

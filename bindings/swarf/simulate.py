@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Sequence
 
-from . import colours, loose
+from . import colours, loose, solids
 from ._native import Camera, Comparison, Contour, Mesh, Scene, Simulation, Stock, Surface, compare_volume
 from .job import Job
 from .parts import largest
@@ -15,12 +15,13 @@ from .stocks import DEFAULT_RESOLUTION, make_first, make_stock, stock_box, voxel
 
 __all__ = [
     "DEFAULT_RESOLUTION", "MESH_ERROR_VOXELS", "MESH_SUFFIXES", "Progress", "Result", "STOCK_SUFFIXES", "make_stock",
-    "output_suffix", "simulate", "stock_box", "voxel_of",
+    "OUTPUT_SUFFIXES", "output_suffix", "simulate", "stock_box", "voxel_of",
 ]
 
 #: What an output file can be, by its suffix.
 MESH_SUFFIXES = (".stl", ".ply", ".obj", ".3mf", ".glb")
 STOCK_SUFFIXES = (".vdb",)
+OUTPUT_SUFFIXES = MESH_SUFFIXES + STOCK_SUFFIXES + solids.SUFFIXES
 
 #: What a mesh may be off, in voxels, where nobody says: as much as the stock itself is at its edges.
 MESH_ERROR_VOXELS = 0.1
@@ -43,6 +44,7 @@ class Result:
     seconds: dict[str, float] = field(default_factory=dict)
     before: list[tuple[Job, Simulation]] = field(default_factory=list)  #: of the set-ups before, the first one first
     surface: Optional[Surface] = None  #: exact, where a mesh or a picture was made
+    solids: list[solids.Written] = field(default_factory=list)  #: .step files, and why they are of facets where they are
     loose: loose.LoosePieces = field(default_factory=loose.LoosePieces)  #: what hangs on nothing any more
     dropped_mm3: float = 0.0  #: of it, where it was left out
     resampled_voxels: float = 0.0  #: how far the first stock's voxels may be off for being turned; 0: they are as they were
@@ -79,7 +81,8 @@ def simulate(
     stock's longest edge (512 unless told); ``batch`` as in Stock.simulate(). The stock is compared with the design when
     the job has one. A mesh is made when ``mesh`` is true or an output needs it; where exactly one .stl file does, with
     no ``colour`` and nothing dropped, it is streamed there (Mesh.stream()): then the result has its ``contour``, but no
-    mesh. ``outputs`` are .stl, .ply, .obj, .3mf, .glb and .vdb files, ``picture`` a .png file. ``colour`` (operation,
+    mesh. ``outputs`` are .stl, .ply, .obj, .3mf, .glb, .vdb and .step (.stp) files, ``picture`` a .png file; a .step file
+    has faces as they were cut where that is possible, else facets, and ``solids`` of the result tells why. ``colour`` (operation,
     deviation, thickness) is what the mesh files are coloured by, deviations green within ``tolerance`` of the design and
     ``allowance``, which is meant to be left on it (mm). Pieces that come loose are in the result, with the moves that
     free them; ``drop_loose`` leaves them out of all that follows. Seconds of each stage are in the result. Raises what
@@ -104,7 +107,8 @@ def simulate(
     first = timed("stock", lambda report: make_first(job.stock, voxel=voxel, resolution=resolution, progress=report))
     stock = first.stock
     meshed, exact = mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs), None
-    if meshed or picture is not None:  # before the cut: the exact surface begins with the stock as it was
+    solid = any(output_suffix(path) in solids.SUFFIXES for path in outputs)
+    if meshed or solid or picture is not None:  # before the cut: the exact surface begins with the stock as it was
         exact = timed("stock", lambda report: first.surface(job.program, job.tools, progress=report))
     simulation = timed("cut", lambda report: stock.simulate(job.program, job.tools, batch=batch, progress=report))
     result = Result(job, stock, simulation, seconds=seconds, before=first.played, surface=exact,
@@ -117,6 +121,7 @@ def simulate(
         result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
                                                                    progress=report))
         result.contour = result.mesh.contour
+    cut = stock
     if drop_loose and (result.loose.pieces or result.loose.crumbs):
         whole = Mesh.from_stock(stock) if result.mesh is None else result.mesh
         result.stock = stock = timed("mesh", lambda report: Stock.from_mesh(largest(whole), stock.voxel, progress=report))
@@ -128,12 +133,15 @@ def simulate(
     if colour is not None and result.mesh is not None:
         tints = timed("mesh", lambda report: colours.make(
             colour, result.mesh, exact, job, tolerance, progress=report, allowance=allowance))
-    for path in outputs:
+    for path in sorted(outputs, key=lambda path: output_suffix(path) in solids.SUFFIXES):  # these last: they may not do
         if output_suffix(path) in MESH_SUFFIXES and streamed:
             result.contour = timed("mesh", lambda report: Mesh.stream(
                 stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=exact, progress=report))
         elif output_suffix(path) in MESH_SUFFIXES:
             timed("write", lambda report: result.mesh.write(path, colors=tints, progress=report))
+        elif output_suffix(path) in solids.SUFFIXES:
+            result.solids.append(timed("write", lambda report: solids.write(
+                cut, exact, path, error=MESH_ERROR_VOXELS * cut.voxel, only_largest=drop_loose, progress=report)))
         else:
             timed("write", lambda report: stock.write(path, progress=report))
     if picture is not None:
@@ -153,6 +161,6 @@ def streams(paths: Sequence[str]) -> bool:
 def output_suffix(path: str) -> str:
     """Suffix of an output file in lower case; ValueError unless it is one that can be written."""
     suffix = os.path.splitext(os.fspath(path))[1].lower()
-    if suffix not in MESH_SUFFIXES + STOCK_SUFFIXES:
-        raise ValueError(f"{os.fspath(path)}: unknown suffix; an output is {', '.join(MESH_SUFFIXES + STOCK_SUFFIXES)}")
+    if suffix not in OUTPUT_SUFFIXES:
+        raise ValueError(f"{os.fspath(path)}: unknown suffix; an output is {', '.join(OUTPUT_SUFFIXES)}")
     return suffix

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Iterable
 
-from . import report
 from .brep import Brep, Edge, Face
+from .files import write_text
 from .shapes import CONE, CYLINDER, PLANE, SPHERE, Vector, add, cross, distance, dot, unit
 
 
@@ -182,4 +182,4 @@ def text(brep: Brep, name: str = "stock") -> str:
 
 def write(brep: Brep, path: str, name: str = "stock") -> None:
     """Write a Brep; beside the target and renamed. OSError."""
-    report.write_text(text(brep, name), path)
+    write_text(text(brep, name), path)

@@ -176,7 +176,7 @@ def test_impossible_inputs(refused, tmp_path, name, content, says):
 @pytest.mark.parametrize(
     "words, says",
     [
-        (("--output", "s.step"), ["unknown suffix", ".stl"]),
+        (("--output", "s.iges"), ["unknown suffix", ".stl", ".step"]),
         (("--output", "s"), ["unknown suffix"]),
         (("--picture", "s.jpg"), [".png"]),
         (("--report", "s.txt"), [".json"]),

@@ -244,7 +244,7 @@ def test_command(stock, tmp_path, capsys):
         (["--error", "-1", "--measure"], "error -1"),
         (["--error", "nan", "--measure"], "error nan"),
         (["--budget", "-1", "--measure"], "budget -1"),
-        (["--output", "part.step"], "unknown suffix"),
+        (["--output", "part.iges"], "unknown suffix"),
         (["--output", "/none/part.stl"], "cannot be written"),
         (["--measure"], "cannot open"),
     ],

@@ -9,7 +9,7 @@ import os
 import sys
 from typing import Any, Optional
 
-from .. import _native, colours
+from .. import _native, colours, solids
 from ..console import DONE, FINDINGS, check_outputs
 from ..parts import PLANE_HELP, parse_plane, pieces, thinnest
 from ..progress import Bar
@@ -30,7 +30,7 @@ def add(subparsers: Any) -> None:
     command.add_argument("--budget", metavar="N", type=int, default=0,
                          help="no more triangles than N, if the error allows")
     command.add_argument("--output", metavar="FILE", action="append", default=[],
-                         help=f"write the mesh: {' '.join(MESH_SUFFIXES)} (repeatable); one that does not fit into memory only to .stl")
+                         help=f"write the mesh: {' '.join(MESH_SUFFIXES)}, or .step, of facets (repeatable); one that does not fit into memory only to .stl")
     command.add_argument("--split", action="store_true",
                          help="write every piece that hangs together to a file of its own: FILE-1, FILE-2 ...")
     command.add_argument("--split-at", metavar="PLANE", type=parse_plane, action="append", default=[],
@@ -92,8 +92,16 @@ def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> 
     for number, part in enumerate(parts_of(mesh, arguments), 1):
         tints = colours.by_thickness(part) if arguments.thickness and part.triangle_count else None
         for path in arguments.output:
+            if os.path.splitext(path)[1].lower() in solids.SUFFIXES:
+                solids.write_facets(part, numbered(path, number) if several else path, NO_PROGRAM,
+                                    lambda fraction: bar("write", fraction))
+                continue
             part.write(numbered(path, number) if several else path, colors=tints,
                        progress=lambda fraction: bar("write", fraction))
+
+
+#: Why ``swarf mesh`` writes no faces as they were cut.
+NO_PROGRAM = "the program that cut them is not known here, but swarf simulate --output knows it"
 
 
 def numbered(path: str, number: int) -> str:
@@ -115,8 +123,8 @@ def run(arguments: argparse.Namespace) -> int:
     if (arguments.split or arguments.split_at) and not arguments.output:
         raise ValueError("--split and --split-at write files: give --output FILE")
     for path in arguments.output:
-        if os.path.splitext(path)[1].lower() not in MESH_SUFFIXES:
-            raise ValueError(f"{path}: unknown suffix; a mesh is {', '.join(MESH_SUFFIXES)}")
+        if os.path.splitext(path)[1].lower() not in MESH_SUFFIXES + solids.SUFFIXES:
+            raise ValueError(f"{path}: unknown suffix; a mesh is {', '.join(MESH_SUFFIXES + solids.SUFFIXES)}")
     _native.set_threads(arguments.threads)
     check_outputs(arguments.output, arguments.input)
     with Bar() as bar:
@@ -133,6 +141,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.measure:
         json.dump(measures(mesh, arguments.thickness), sys.stdout, indent=2, allow_nan=False)
         print()
+    for path in arguments.output:
+        if os.path.splitext(path)[1].lower() in solids.SUFFIXES:
+            print(f"swarf: note: {path}: facets, no faces as they were cut: {NO_PROGRAM}", file=sys.stderr)
     if made is None:
         return DONE
     if made.intersections_left:

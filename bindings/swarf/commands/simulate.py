@@ -24,7 +24,7 @@ def add(subparsers: Any) -> None:
     )
     inputs.add_arguments(command)
     command.add_argument("--output", metavar="FILE", action="append", default=[],
-                         help="write the result: .stl .ply .obj .3mf .glb .vdb (repeatable)")
+                         help="write the result: .stl .ply .obj .3mf .glb .vdb .step (repeatable)")
     command.add_argument("--colours", choices=colours.KINDS, help="what mesh files are coloured by (not .stl)")
     command.add_argument("--tolerance", metavar="MM", type=float, default=0.05,
                          help="deviations up to this are coloured green (default 0.05)")
@@ -75,6 +75,8 @@ def run(arguments: argparse.Namespace) -> int:
     told = [f"warning: line {piece.line}: {piece.text}" for piece in result.loose.pieces]
     if result.loose.crumbs:
         told.append(f"note: {result.loose.crumbs} crumbs of a few voxels are loose")
+    told += [f"note: {solid.path}: {solid.faces} facets, no faces as they were cut: {solid.reason}"
+             for solid in result.solids if solid.reason]
     cuts = getattr(result.contour, "intersections_left", 0)
     if cuts:
         told.append(f"warning: {cuts} pairs of triangles cut each other: the surface touches itself there")

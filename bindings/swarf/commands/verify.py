@@ -10,6 +10,7 @@ from typing import Any
 
 from .. import accept, document, inputs, loads, pdf, report
 from ..console import DONE, FINDINGS, check_outputs, one_line
+from ..files import write_text
 from ..progress import Bar
 from ..verify import CAD_SUFFIXES, DESIGN_SUFFIXES, Verdict, read_design, verify
 
@@ -108,7 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
             if suffix != ".json":
                 text = text or document.make(done, made, lambda fraction: bar("pictures", fraction))
             if suffix == ".html":
-                report.write_text(text, path)
+                write_text(text, path)
             elif suffix == ".pdf":
                 pdf.write(text, path)
             else:

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""STEP files of what is left of a stock: with faces as they were cut where all of it is known, else of facets."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+from . import brep, step
+from ._native import Mesh, Stock, Surface
+from .parts import largest, pieces
+from .progress import Report, check, share
+from .shapes import PLANE, Shape, add, cross, unit
+
+__all__ = ["SUFFIXES", "Written", "facets", "write", "write_facets"]
+
+SUFFIXES = (".step", ".stp")
+
+#: A solid is made of a mesh with an error of so many voxels: few triangles where it is flat, and edges that wander
+#: little.
+ERROR_VOXELS = 0.02
+
+#: Triangles whose faces are told in a minute or so.
+TRIANGLES_MAX = 500000
+
+#: Of facets: a file of some 90 MB, more than CAD programs read.
+FACETS_MAX = 100000
+
+
+@dataclass
+class Written:
+    """A file that was written. ``reason``: why it is of facets, None where its faces are as they were cut."""
+
+    path: str
+    faces: int
+    reason: Optional[str] = None
+
+
+def facets(mesh: Mesh, progress: Report = None) -> brep.Brep:
+    """Each triangle of a closed mesh a plane. ValueError: open, empty, a hollow inside, too many."""
+    if not mesh.triangle_count or not mesh.closed:
+        raise ValueError("a solid is made of a closed mesh")
+    if mesh.triangle_count > FACETS_MAX:
+        raise ValueError(f"{mesh.triangle_count} triangles are too many for facets, of which {FACETS_MAX} are written at most")
+    made = brep.Brep([], [], [], [], 0.0)
+    shells = pieces(mesh.shells())
+    if any(len(shell) > 1 for shell in shells):
+        raise ValueError("there is a hollow inside")
+    for shell in shells:
+        _add(made, mesh.keep_shells(shell) if len(shells) > 1 else mesh)
+        check(progress, len(made.faces) / mesh.triangle_count)
+    return made
+
+
+def _add(made: brep.Brep, mesh: Mesh) -> None:
+    """One shell more."""
+    corner, first = len(made.corners), len(made.faces)
+    made.corners.extend(tuple(place) for place in memoryview(mesh.vertices).tolist())
+    edges: dict[tuple[int, int], int] = {}
+    for triangle in memoryview(mesh.triangles).tolist():
+        a, b, c = (made.corners[corner + vertex] for vertex in triangle)
+        loop = []
+        for start, end in zip(triangle, (*triangle[1:], triangle[0])):
+            forwards = (end, start) not in edges
+            if forwards:
+                edges[start, end] = len(made.edges)
+                made.edges.append(brep.Edge(corner + start, corner + end))
+            loop.append((edges[start, end] if forwards else edges[end, start], forwards))
+        normal = unit(cross(add(b, a, -1), add(c, a, -1)))
+        made.faces.append(brep.Face(Shape(PLANE, a, normal, 0.0, 0.0), True, [loop]))
+    made.shells.append(list(range(first, len(made.faces))))
+
+
+def write_facets(mesh: Mesh, path: str, reason: str, progress: Report = None) -> Written:
+    """A STEP file of facets. ValueError as facets(), with the reason why it is none of faces; OSError."""
+    try:
+        made = facets(mesh, share(progress, 0, 0.7))
+    except ValueError as problem:
+        raise ValueError(f"{path}: cannot be written: {problem}; faces as they were cut are not possible: {reason}") from None
+    step.write(made, path)
+    return Written(path, len(made.faces), reason)
+
+
+def write(stock: Stock, surface: Surface, path: str, *, error: float, only_largest: bool = False,
+          progress: Report = None) -> Written:
+    """A STEP file of what is left of a stock after all moves of its Surface; of facets, with this error (mm), where it is
+    not bounded by planes, cylinders, cones, spheres and tori alone. ValueError where it is too much even for facets, or
+    nothing is left; OSError."""
+    mesh = Mesh.from_stock(stock, ERROR_VOXELS * stock.voxel, surface=surface, progress=share(progress, 0, 0.4))
+    mesh = largest(mesh) if only_largest else mesh
+    try:
+        if mesh.triangle_count > TRIANGLES_MAX:
+            raise ValueError(f"its mesh has {mesh.triangle_count} triangles, and faces are told of {TRIANGLES_MAX} at most")
+        made = brep.make(mesh, surface, stock.voxel, progress=share(progress, 0.4, 0.8))
+    except ValueError as problem:  # brep.NotAnalytic among them
+        coarse = Mesh.from_stock(stock, error, surface=surface, progress=share(progress, 0.8, 0.9))
+        return write_facets(largest(coarse) if only_largest else coarse, path, str(problem), share(progress, 0.9, 1))
+    step.write(made, path)
+    return Written(path, len(made.faces))

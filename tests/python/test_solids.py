@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""STEP files: faces as they were cut where these are known, else facets, and the reason."""
+import json
+import re
+
+import pytest
+
+import swarf
+from conftest import GCODE
+from swarf import solids
+from swarf.cli import main
+from swarf.shapes import add, cross, dot
+
+WORDS = ("--stock", "box:0,0,-10,60,40,0", "--tool", "1=flat:d=6,l=20", "--voxel", "0.5")
+
+
+def volume(made):
+    """Of a Brep of triangles."""
+    total = 0.0
+    for face in made.faces:
+        (loop,) = face.loops
+        a, b, c = (made.corners[made.edges[edge].start if forwards else made.edges[edge].end] for edge, forwards in loop)
+        total += dot(a, cross(b, c)) / 6
+        assert dot(cross(add(b, a, -1), add(c, a, -1)), face.shape.axis) > 0
+    return total
+
+
+def test_facets_enclose_what_the_mesh_does():
+    stock = swarf.Stock.box((0, 0, 0), (6, 5, 4), voxel=0.5)
+    mesh = swarf.Mesh.from_stock(stock, 0.05)
+    made = solids.facets(mesh)
+    assert len(made.faces) == mesh.triangle_count and len(made.shells) == 1
+    assert len(made.corners) - len(made.edges) + len(made.faces) == 2
+    assert volume(made) == pytest.approx(mesh.volume, rel=1e-9)
+    uses = [(edge, forwards) for face in made.faces for loop in face.loops for edge, forwards in loop]
+    assert sorted(uses) == [(edge, way) for edge in range(len(made.edges)) for way in (False, True)]
+
+
+def test_two_solids_and_what_is_none():
+    box = solids_box((0, 0, 0), (1, 1, 1))
+    apart = solids_box((0, 0, 0), (1, 1, 1), (2, 0, 0), (3, 1, 1))
+    assert len(solids.facets(box).shells) == 1 and len(solids.facets(apart).shells) == 2
+    hollow = swarf.Mesh(*join((0, 0, 0), (3, 3, 3), (1, 1, 1), (2, 2, 2), turned=True))
+    with pytest.raises(ValueError, match="hollow"):
+        solids.facets(hollow)
+    with pytest.raises(ValueError, match="closed"):
+        solids.facets(swarf.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
+
+
+def join(*corners, turned=False):
+    """Vertices and triangles of boxes; the last one's turned inside out."""
+    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    vertices, triangles = [], []
+    for number in range(0, len(corners), 2):
+        lo, hi, first = corners[number], corners[number + 1], len(vertices)
+        vertices += [((lo, hi)[i >> 2][0], (lo, hi)[i >> 1 & 1][1], (lo, hi)[i & 1][2]) for i in range(8)]
+        for a, b, c, d in quads:
+            both = [(a, b, c), (a, c, d)]
+            if turned and number + 2 == len(corners):
+                both = [tuple(reversed(one)) for one in both]
+            triangles += [tuple(first + vertex for vertex in one) for one in both]
+    return vertices, triangles
+
+
+def solids_box(*corners):
+    return swarf.Mesh(*join(*corners))
+
+
+def test_faces_as_they_were_cut(tmp_path, capsys):
+    program = tmp_path / "slot.nc"
+    program.write_text(GCODE)
+    names = [str(tmp_path / name) for name in ("part.step", "part.stl", "report.json")]
+    status = main(["simulate", str(program), *WORDS, "--output", names[0], "--output", names[1], "--report", names[2]])
+    assert status == 0 and capsys.readouterr().err == ""
+    text = (tmp_path / "part.step").read_text()
+    faces = text.count("ADVANCED_FACE(")
+    assert faces == text.count("=PLANE(") + text.count("=CYLINDRICAL_SURFACE(") and text.count("=CYLINDRICAL_SURFACE(") > 0
+    assert json.loads((tmp_path / "report.json").read_text())["solids"] == [
+        {"file": names[0], "faces": faces, "facets_because": None}]
+
+
+def test_facets_and_why(tmp_path, capsys):
+    """A flat end down a slope leaves a face that is none of the five."""
+    program = tmp_path / "ramp.nc"
+    program.write_text("G21 G90\nT1 M6\nS1000 M3\nG0 X10 Y20 Z5\nG1 Z-1 F100\nG1 X45 Y25 Z-4\nG0 Z5\nM30\n")
+    step = tmp_path / "part.stp"
+    status = main(["simulate", str(program), *WORDS, "--output", str(step), "--report", str(tmp_path / "report.json")])
+    told = capsys.readouterr().err
+    text = step.read_text()
+    made = json.loads((tmp_path / "report.json").read_text())["solids"][0]
+    assert status == 0 and re.search(r"note: .*part.stp: \d+ facets, .*not what is near \(", told)
+    assert text.count("ADVANCED_FACE(") == text.count("=PLANE(") == made["faces"] and "near" in made["facets_because"]
+    assert text.count("=LINE(") == made["faces"] * 3 // 2
+
+
+def test_meshes_and_too_many(tmp_path, capsys, monkeypatch):
+    stock = swarf.Stock.box((0, 0, 0), (6, 5, 4), voxel=0.5)
+    stock.write(tmp_path / "stock.vdb")
+    words = ["mesh", str(tmp_path / "stock.vdb"), "--output", str(tmp_path / "part.step")]
+    assert main(words) == 0 and "swarf simulate --output knows" in capsys.readouterr().err
+    assert (tmp_path / "part.step").read_text().count("ADVANCED_FACE(") >= 12
+    (tmp_path / "part.step").unlink()
+    monkeypatch.setattr(solids, "FACETS_MAX", 3)
+    assert main(words) == 2 and "too many for facets" in capsys.readouterr().err
+    assert not (tmp_path / "part.step").exists()
