@@ -12,10 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How often the surroundings of facets that cut each other are made again: first unsimplified, then as if the surface
- * were smooth, then with vertices in the middle of their crossings; what then still touches itself does so on the
- * stock's surface. */
-enum { ATTEMPTS = 7 };
+/* How often the whole is attempted; and how often, between two attempts, the surroundings of facets that cut each other
+ * are made again: unsimplified, as if the surface were smooth, with vertices in the middle of their crossings; what
+ * then still touches itself does so on the stock's surface. */
+enum { ATTEMPTS = 7, CLOSE_LOOKS = 7 };
 
 swarf_contour_options swarf_contour_options_default(void)
 {
@@ -129,42 +129,6 @@ static swarf_status gather(contour *work, swarf_facets *out)
     if (!out->xyz || !out->facet)
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for %zu triangles", facets);
     return swarf_parallel_for(work->block_count, gather_one, &g, NULL, 0, 1);
-}
-
-/* Note the cells of the surface where the boxes of two facets that cut each other overlap, and two voxels round it.
- */
-static void note_cells(contour *work, const swarf_facets *facets, const swarf_facet_pair *pair)
-{
-    int32_t lo[3], hi[3];
-    for (int k = 0; k < 3; k++) {
-        double least[2], most[2];
-        const uint32_t facet[2] = {pair->a, pair->b};
-        for (int i = 0; i < 2; i++) {
-            const uint32_t *v = facets->facet[facet[i]].v;
-            const double p[3] = {facets->xyz[3 * (size_t)v[0] + (size_t)k], facets->xyz[3 * (size_t)v[1] + (size_t)k],
-                                 facets->xyz[3 * (size_t)v[2] + (size_t)k]};
-            least[i] = fmin(p[0], fmin(p[1], p[2]));
-            most[i] = fmax(p[0], fmax(p[1], p[2]));
-        }
-        const double voxel = work->layout->voxel, origin = work->layout->origin[k];
-        lo[k] = (int32_t)floor((fmax(least[0], least[1]) - origin) / voxel) - 2;
-        hi[k] = (int32_t)floor((fmin(most[0], most[1]) - origin) / voxel) + 2;
-    }
-    for (int32_t x = lo[0] & ~7; x <= hi[0]; x += 8)
-        for (int32_t y = lo[1] & ~7; y <= hi[1]; y += 8)
-            for (int32_t z = lo[2] & ~7; z <= hi[2]; z += 8) {
-                const int32_t corner[3] = {x, y, z};
-                contour_block *block = swarf_contour_block_at(work, corner);
-                if (!block) continue;
-                for (int i = 0; i < 8; i++) {
-                    if (x + i < lo[0] || x + i > hi[0]) continue;
-                    uint64_t word = block->cell_mask[i];
-                    for (int bit = 0; bit < 64; bit++)
-                        if (y + bit / 8 < lo[1] || y + bit / 8 > hi[1] || z + bit % 8 < lo[2] || z + bit % 8 > hi[2])
-                            word &= ~(UINT64_C(1) << bit);
-                    block->noted_mask[i] |= word;
-                }
-            }
 }
 
 /* Whether facets end at the vertices of these cells: those beside the planes between bands, and the last ones joined.
@@ -305,55 +269,74 @@ static swarf_status attempt(const stage *s, int first, found *out)
     return find_pairs(s, first, out);
 }
 
-/* Facets of blocks beside those whose vertices or tiles are others may be others too. Tiles look two cells about them,
- * so that those of the next block may be others, and with them the facets of the one after. */
-static void touch_about(contour *work, const contour_block *block)
+/* Facets of blocks where care is taken, in and above the cells noted; those of others are as if there were none. */
+static swarf_status join_kept(void *context, size_t index)
 {
-    for (int c = 0; c < 125; c++) {
-        const int part[3] = {c / 25 - 2, c / 5 % 5 - 2, c % 5 - 2};
-        int32_t corner[3];
-        for (int k = 0; k < 3; k++) corner[k] = block->ijk[k] + part[k] * SWARF_LEAF_DIM;
-        contour_block *near = swarf_contour_block_at(work, corner);
-        if (near) near->touched = 1;
+    contour *work = context;
+    contour_block *block = &work->blocks[index];
+    uint64_t kept = 0;
+    for (int c = 0; c < 8 && block->touched; c++) {
+        const int32_t corner[3] = {block->ijk[0] - (c >> 2) * SWARF_LEAF_DIM,
+                                   block->ijk[1] - (c >> 1 & 1) * SWARF_LEAF_DIM,
+                                   block->ijk[2] - (c & 1) * SWARF_LEAF_DIM};
+        const contour_block *near = swarf_contour_block_at(work, corner);
+        for (int x = 0; near && x < 8; x++) kept |= near->keep_mask[x];
     }
+    if (kept) return join_one(context, index);
+    block->facet_count = block->full_count = block->centre_count = 0;
+    return SWARF_OK;
 }
 
-/* Whether a vertex of a cell noted, whose vertices are kept already, lies beside it. */
-static int any_beside(const stage *s)
+/* Note where facets of cells that care was taken of cut each other, with all vertices there; returns their pairs. */
+static swarf_status look_closely(const stage *s, size_t *count)
 {
-    uint64_t beside = 0;
-    for (size_t b = 0; b < s->work->block_count; b++) {
-        const contour_block *block = &s->work->blocks[b];
-        for (int x = 0; x < 8 && !block->finished; x++)
-            beside |= block->noted_mask[x] & block->beside_mask[x] &
-                      (s->options->error_mm > 0 ? block->keep_mask[x] : UINT64_MAX);
+    contour *work = s->work;
+    swarf_facets *facets = s->facets;
+    work->error_mm = 0; /* no tiles */
+    const swarf_status status = swarf_parallel_for(work->block_count, tile_again, work, NULL, 0, 1);
+    work->error_mm = s->options->error_mm;
+    SWARF_TRY(status);
+    SWARF_TRY(number_vertices(work));
+    SWARF_TRY(swarf_parallel_for(work->block_count, join_kept, work, NULL, 0, 1));
+    SWARF_TRY(gather(work, facets));
+    swarf_facets_snap(facets, work->band ? work->band->step : 0);
+    uint8_t *marks = mark_vertices(work, facets);
+    if (!marks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    size_t kept = 0;
+    for (size_t f = 0; f < facets->facet_count; f++) {
+        const uint32_t *v = facets->facet[f].v;
+        if ((marks[v[0]] | marks[v[1]] | marks[v[2]]) & SWARF_VERTEX_LOCKED) facets->facet[kept++] = facets->facet[f];
     }
-    return beside != 0;
+    facets->facet_count = kept;
+    free(marks);
+    swarf_facet_pair *pairs;
+    size_t all;
+    SWARF_TRY(swarf_facets_intersect(facets, NULL, 0, 1, &pairs, &all));
+    *count = 0;
+    for (size_t i = 0; i < all; i++) {
+        if (facets->facet[pairs[i].a].beyond && facets->facet[pairs[i].b].beyond) continue;
+        swarf_contour_note(work, facets, &pairs[i]);
+        ++*count;
+    }
+    free(pairs);
+    return SWARF_OK;
 }
 
-/* The next remedy for the cells noted; without an error to spend all vertices are kept already. */
-static void take_more_care(const stage *s)
+/* Take care of the cells noted, and of those that then still have facets that cut each other: a look at them alone
+ * costs little beside an attempt of the whole. */
+static swarf_status take_care(const stage *s)
 {
-    const int beside = any_beside(s);
-    for (size_t b = 0; b < s->work->block_count; b++) s->work->blocks[b].touched = 0;
-    for (size_t b = 0; b < s->work->block_count; b++) {
-        contour_block *block = &s->work->blocks[b];
-        uint64_t any = 0;
-        block->changed = 0;
-        if (block->finished) continue;
-        for (int x = 0; x < 8; x++) {
-            const uint64_t noted = block->noted_mask[x], kept = s->options->error_mm > 0 ? block->keep_mask[x] : noted;
-            block->changed |= (noted & kept) != 0;
-            block->own_mask[x] |= noted & kept;
-            if (!beside) {
-                block->middle_mask[x] |= noted & block->calm_mask[x];
-                block->calm_mask[x] |= noted & kept;
-            }
-            block->keep_mask[x] |= noted;
-            block->noted_mask[x] = 0;
-            any |= noted;
-        }
-        if (any) touch_about(s->work, block);
+    contour *work = s->work;
+    for (size_t b = 0; b < work->block_count; b++) work->blocks[b].touched = 0;
+    swarf_contour_take_care(work, !(s->options->error_mm > 0));
+    for (int look = 0;; look++) {
+        size_t count;
+        SWARF_TRY(swarf_progress_report(s->progress, 0.99));
+        SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, NULL, 0, 1));
+        if (look == CLOSE_LOOKS) return SWARF_OK;
+        SWARF_TRY(look_closely(s, &count));
+        if (count == 0) return SWARF_OK;
+        swarf_contour_take_care(work, 1);
     }
 }
 
@@ -366,14 +349,13 @@ static swarf_status settle(const stage *s)
         SWARF_TRY(swarf_progress_report(s->progress, 0.6 + (round ? 0.39 : 0)));
         SWARF_TRY(attempt(s, round == 0, &now));
         if (round == 0) s->report->intersections_found += now.fresh;
-        for (size_t i = 0; i < now.count; i++) note_cells(work, s->facets, &now.pairs[i]);
+        for (size_t i = 0; i < now.count; i++) swarf_contour_note(work, s->facets, &now.pairs[i]);
         free(now.pairs);
         if (now.count == 0 || round == ATTEMPTS) {
             s->report->intersections_left += now.last;
             return SWARF_OK;
         }
-        take_more_care(s);
-        SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, NULL, 0, 1));
+        SWARF_TRY(take_care(s));
     }
 }
 

@@ -18,6 +18,7 @@
 #define SWARF_MESH_CONTOUR_H
 
 #include "mesh/facets.h"
+#include "mesh/intersect.h"
 #include "stock/stock.h"
 #include "swarf/mesh.h"
 
@@ -156,6 +157,11 @@ swarf_status swarf_contour_blocks(contour *work);
  *  blocks are there; those that are finished stay as they are. */
 swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *options, const swarf_progress *progress,
                                   swarf_facets *facets, swarf_contour_report *report);
+/** Note the cells of the surface where the boxes of two facets that cut each other overlap, and two voxels round it. */
+void swarf_contour_note(contour *work, const swarf_facets *facets, const swarf_facet_pair *pair);
+/** The next remedy for the cells noted: the blocks to be placed again are then `changed`, those about them touched.
+ *  `all_kept`: no vertices are left out as it is. */
+void swarf_contour_take_care(contour *work, int all_kept);
 /** Whether a block is of the band or within so many layers above it. */
 static inline int swarf_contour_is_within(const contour *work, const contour_block *block, int above)
 {
