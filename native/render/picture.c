@@ -17,32 +17,55 @@
 
 enum { PACKET_EDGE = 4, GROUP_EDGE = 2, PIXELS_MAX = 16384, SAMPLES_MAX = 4, COARSE_MAX = 16 };
 
-/** A square of packets: their places and grid squares. */
+/** A square of packets, each of whole rows of squares: its left upper square and how many a row has. */
 typedef struct group {
     swarf_places places[SWARF_GROUP];
-    int32_t x[SWARF_GROUP][SWARF_PACKET], y[SWARF_GROUP][SWARF_PACKET];
+    int32_t left[SWARF_GROUP], top[SWARF_GROUP];
+    unsigned across[SWARF_GROUP];
 } group;
 
 _Static_assert(GROUP_EDGE *GROUP_EDGE == SWARF_GROUP, "a group is a square of packets");
+_Static_assert(PACKET_EDGE *PACKET_EDGE == SWARF_PACKET, "a packet is a square of rays");
 _Static_assert(SAMPLES_MAX *SAMPLES_MAX <= SWARF_PACKET, "the samples of a square fit in one packet");
 
-/** The packets of the square from (x0, y0). */
-static void place_group(const swarf_canvas *c, int32_t x0, int32_t y0, group *g)
+/** Grid squares of one piece of work, the places of their middles, and what is behind all in each row. */
+typedef struct tile {
+    int32_t left, top, right, bottom;
+    double x[SWARF_TILE], y[SWARF_TILE];
+    uint8_t behind[SWARF_TILE][4];
+} tile;
+
+/** The packets of the square from (x0, y0) on. */
+static void place_group(const tile *t, int32_t x0, int32_t y0, group *g)
 {
     for (int i = 0; i < SWARF_GROUP; i++) {
         swarf_places *p = &g->places[i];
         const int32_t left = x0 + i % GROUP_EDGE * PACKET_EDGE, top = y0 + i / GROUP_EDGE * PACKET_EDGE;
+        const int32_t right = left + PACKET_EDGE < t->right ? left + PACKET_EDGE : t->right;
+        const int32_t bottom = top + PACKET_EDGE < t->bottom ? top + PACKET_EDGE : t->bottom;
+        g->left[i] = left;
+        g->top[i] = top;
+        g->across[i] = right > left ? (unsigned)(right - left) : 0;
         p->count = 0;
-        for (int32_t y = top; y < top + PACKET_EDGE && y < c->height; y++) {
-            const double place = swarf_canvas_y(c, y, 0.5);
-            for (int32_t x = left; x < left + PACKET_EDGE && x < c->width; x++, p->count++) {
-                p->x[p->count] = swarf_canvas_x(c, x, 0.5);
-                p->y[p->count] = place;
-                g->x[i][p->count] = x;
-                g->y[i][p->count] = y;
+        for (int32_t y = top; y < bottom; y++)
+            for (int32_t x = left; x < right; x++, p->count++) {
+                p->x[p->count] = t->x[x - t->left];
+                p->y[p->count] = t->y[y - t->top];
             }
-        }
         for (unsigned idle = p->count; idle < SWARF_PACKET; idle++) p->x[idle] = p->y[idle] = 0;
+    }
+}
+
+/** Copy what each ray of packet `i` has, `size` bytes, to its square of the grid. */
+static void put_group(const swarf_canvas *c, const group *g, int i, const void *from, void *grid, size_t size)
+{
+    const size_t row = g->across[i] * size;
+    const char *own = from;
+    char *to = (char *)grid + swarf_canvas_at(c, g->left[i], g->top[i]) * size;
+    for (unsigned done = 0; done < g->places[i].count; done += g->across[i]) {
+        memcpy(to, own, row);
+        own += row;
+        to += (size_t)c->width * size;
     }
 }
 
@@ -52,9 +75,7 @@ static void keep_group(const swarf_canvas *c, const group *g)
     swarf_sight seen[SWARF_GROUP][SWARF_PACKET], *out[SWARF_GROUP];
     for (int i = 0; i < SWARF_GROUP; i++) out[i] = seen[i];
     swarf_look_through(&c->look, g->places, SWARF_GROUP, out);
-    for (int i = 0; i < SWARF_GROUP; i++)
-        for (unsigned ray = 0; ray < g->places[i].count; ray++)
-            c->middle[swarf_canvas_at(c, g->x[i][ray], g->y[i][ray])] = seen[i][ray];
+    for (int i = 0; i < SWARF_GROUP; i++) put_group(c, g, i, seen[i], c->middle, sizeof seen[i][0]);
 }
 
 /** Shade what is seen at once. */
@@ -65,8 +86,21 @@ static void paint_group(const swarf_canvas *c, const group *g)
     for (int i = 0; i < SWARF_GROUP; i++) {
         float colour[SWARF_PACKET][4];
         swarf_shade_rays(&c->shading, &rays[i], &g->places[i], colour);
+        put_group(c, g, i, colour, c->colour, sizeof colour[0]);
+    }
+}
+
+/** The same where nothing else is to come. */
+static void print_group(const swarf_canvas *c, const tile *t, const group *g)
+{
+    swarf_rays rays[SWARF_GROUP];
+    swarf_look_trace(&c->look, g->places, SWARF_GROUP, rays);
+    for (int i = 0; i < SWARF_GROUP; i++) {
+        uint8_t bytes[SWARF_PACKET][4];
         for (unsigned ray = 0; ray < g->places[i].count; ray++)
-            memcpy(c->colour[swarf_canvas_at(c, g->x[i][ray], g->y[i][ray])], colour[ray], sizeof colour[ray]);
+            memcpy(bytes[ray], t->behind[(unsigned)(g->top[i] - t->top) + ray / g->across[i]], sizeof bytes[0]);
+        swarf_shade_hits(&c->shading, &rays[i], bytes);
+        put_group(c, g, i, bytes, c->bytes, sizeof bytes[0]);
     }
 }
 
@@ -79,13 +113,23 @@ static swarf_status look_tile(void *context, size_t index)
 {
     const swarf_canvas *c = context;
     const int32_t across = tiles(c->width);
-    const int32_t x0 = (int32_t)index % across * SWARF_TILE, y0 = (int32_t)index / across * SWARF_TILE;
     enum { STEP = GROUP_EDGE * PACKET_EDGE };
+    tile t = {.left = (int32_t)index % across * SWARF_TILE, .top = (int32_t)index / across * SWARF_TILE};
+    t.right = t.left + SWARF_TILE < c->width ? t.left + SWARF_TILE : c->width;
+    t.bottom = t.top + SWARF_TILE < c->height ? t.top + SWARF_TILE : c->height;
+    for (int32_t x = t.left; x < t.right; x++) t.x[x - t.left] = swarf_canvas_x(c, x, 0.5);
+    for (int32_t y = t.top; y < t.bottom; y++) {
+        const double place = t.y[y - t.top] = swarf_canvas_y(c, y, 0.5);
+        if (c->bytes) swarf_shade_backdrop(&c->shading, place, t.behind[y - t.top]);
+    }
     group g;
-    for (int32_t y = y0; y < y0 + SWARF_TILE && y < c->height; y += STEP)
-        for (int32_t x = x0; x < x0 + SWARF_TILE && x < c->width; x += STEP) {
-            place_group(c, x, y, &g);
-            (c->middle ? keep_group : paint_group)(c, &g);
+    for (int32_t y = t.top; y < t.bottom; y += STEP)
+        for (int32_t x = t.left; x < t.right; x += STEP) {
+            place_group(&t, x, y, &g);
+            if (c->bytes)
+                print_group(c, &t, &g);
+            else
+                (c->middle ? keep_group : paint_group)(c, &g);
         }
     return SWARF_OK;
 }
@@ -204,7 +248,7 @@ static swarf_status put_row(void *context, size_t row)
     const swarf_canvas *c = o->canvas;
     const int32_t width = c->options->width, y = (int32_t)row / c->coarse;
     const int is_more = o->to->seen || o->to->move || o->to->normal || o->to->depth || o->to->position;
-    if (o->to->rgba) put_colours(c, row, o->to->rgba);
+    if (o->to->rgba && !c->bytes) put_colours(c, row, o->to->rgba);
     for (int32_t i = 0; is_more && i < width; i++) {
         const int32_t x = i / c->coarse;
         const size_t at = row * (size_t)width + (size_t)i, square = swarf_canvas_at(c, x, y);
@@ -303,6 +347,7 @@ static swarf_status render(swarf_scene *scene, const swarf_camera *camera, swarf
     SWARF_TRY(swarf_shading_make(&c->look, options, &c->shading));
     const size_t squares = (size_t)c->width * (size_t)c->height;
     const size_t middles = is_plain(scene, &c->shading, out) ? 0 : squares;
+    if (!middles && c->coarse == 1) c->bytes = out->rgba;
     void *scratch = swarf_scene_scratch(scene, squares * sizeof *c->colour + middles * sizeof *c->middle);
     swarf_recall *const recall = swarf_scene_recall(scene);
     swarf_outlook outlook;

@@ -4,6 +4,7 @@
  *   middle   one sight per grid square (a pixel, or coarse * coarse of them), rows from the top; NULL in a plain
  *            picture, which has no use for them once they are shaded
  *   colour   of the squares, linear, premultiplied
+ *   bytes    of a plain picture with one ray per pixel, whose colours go right there; else NULL
  *   sky      how much of the sky is open, per square; NULL: all of it; the recall's, as is the next
  *   sun      255 where the light reaches, per square; NULL: everywhere
  *   edge     how much of an edge the middle of a square is on, 0 .. 255; NULL: edges are not drawn
@@ -27,6 +28,7 @@ typedef struct swarf_canvas {
     int32_t width, height; /* of the grid */
     swarf_sight *middle;
     float (*colour)[4];
+    uint8_t *bytes;
     float *sky;
     uint8_t *sun;
     uint8_t *edge, *outline, *room;

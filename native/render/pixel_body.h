@@ -25,14 +25,33 @@ static void shade(const swarf_tones *in, float out[3][LANES])
     }
 }
 
-static void encode(const float colour[4 * 4], const uint8_t srgb[SWARF_SRGB_SIZE + 1], uint8_t out[4 * 4])
+typedef uint8_t bytes __attribute__((vector_size(LANES)));
+
+/* Values of 0 .. 1 of the table's steps. */
+INLINE counts look_up(const int32_t srgb[SWARF_SRGB_SIZE + 1], lanes value)
 {
-    int32_t place[LANES] __attribute__((aligned(64)));
-    const lanes zero = all(0), one = all(1), half = all(0.5f), c = load(colour);
+    const lanes step = clamped(value, all(0), all(1)) * all(SWARF_SRGB_SIZE) + all(0.5f);
+    return gather_counts(mask_of(0xffff), srgb, to_counts(step));
+}
+
+static void encode(const float colour[4 * 4], const int32_t srgb[SWARF_SRGB_SIZE + 1], uint8_t out[4 * 4])
+{
+    const lanes zero = all(0), one = all(1), c = load(colour);
     const lanes alpha = __builtin_shufflevector(c, c, 3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15);
     const lanes scale = pick(less(zero, alpha), one / alpha, zero);
-    const mask is_alpha = mask_of(0x8888);
-    const lanes part = clamped(pick(is_alpha, c, c * scale), zero, one);
-    store_counts(place, to_counts(part * pick(is_alpha, all(255), all(SWARF_SRGB_SIZE)) + half));
-    for (int i = 0; i < LANES; i++) out[i] = (i & 3) == 3 ? (uint8_t)place[i] : srgb[place[i]];
+    const counts opacity = to_counts(clamped(c, zero, one) * all(255) + all(0.5f));
+    const bytes four = __builtin_convertvector(pick_counts(mask_of(0x8888), opacity, look_up(srgb, c * scale)), bytes);
+    memcpy(out, &four, sizeof four);
+}
+
+static void encode_opaque(const float rgb[3][LANES], const int32_t srgb[SWARF_SRGB_SIZE + 1], unsigned which,
+                          uint8_t out[4 * LANES])
+{
+    /* Where red, green, blue and opacity lie in a word, by the order of its bytes in memory. */
+    enum { FIRST = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? 0 : 24, STEP = FIRST ? -8 : 8 };
+    counts word = all_counts((int32_t)(255u << (FIRST + 3 * STEP))), old;
+    memcpy(&old, out, sizeof old);
+    for (int channel = 0; channel < 3; channel++) word |= look_up(srgb, load(rgb[channel])) << (FIRST + channel * STEP);
+    word = pick_counts(mask_of(which), word, old);
+    memcpy(out, &word, sizeof word);
 }

@@ -86,6 +86,29 @@ INLINE lanes cubic(const lanes c[4], lanes s)
     return ((c[3] * s + c[2]) * s + c[1]) * s + c[0];
 }
 
+/* Where in 0 .. 1 each cubic turns, in order, and its values there; of one that does not, 0 and 0. Few do: a face met
+ * by a ray is steeper than it is bent. */
+INLINE void find_turns(const lanes c[4], mask wanted, lanes at[2], lanes value[2])
+{
+    const lanes zero = all(0), one = all(1);
+    /* The slope's Bernstein coefficients: between them the slope stays. */
+    const lanes first = c[1], middle = c[1] + c[2], last = middle + c[2] + all(3) * c[3];
+    const mask falls = less(maximum(first, maximum(middle, last)), zero);
+    const mask rises = less(zero, minimum(first, minimum(middle, last)));
+    const lanes a = all(3) * c[3], discriminant = c[2] * c[2] - a * c[1];
+    const mask turns = both(except(wanted, either(falls, rises)), less(zero, discriminant));
+    at[0] = at[1] = zero;
+    value[0] = value[1] = c[0];
+    if (!bits(turns)) return;
+    const lanes spread = root(maximum(discriminant, zero));
+    const lanes q = -(c[2] + pick(less(c[2], zero), -spread, spread));
+    /* 0 / 0 and out of range give ends of the interval: minimum(NAN, x) is x. */
+    const lanes r0 = clamped(q / a, zero, one), r1 = clamped(c[1] / q, zero, one);
+    at[0] = pick(turns, minimum(r0, r1), zero);
+    at[1] = pick(turns, maximum(r0, r1), zero);
+    for (int i = 0; i < 2; i++) value[i] = pick(turns, cubic(c, at[i]), c[0]);
+}
+
 /* First s in 0 .. 1 where each cubic falls below 0, for the lanes `wanted`; returns those that have one. Splits at the
  * extrema into monotone intervals (G. Marmitt et al.: Fast and Accurate Ray-Voxel Intersection Techniques for
  * Iso-Surface Ray Tracing, VMV 2004), then Newton's method held inside the bracket. A lane that has arrived stays. */
@@ -93,35 +116,32 @@ INLINE mask first_root(const lanes c[4], mask wanted, lanes *root_out)
 {
     const lanes zero = all(0), one = all(1);
     const mask inside = less(c[0], zero);
-    const lanes a = all(3) * c[3], discriminant = c[2] * c[2] - a * c[1];
-    const lanes spread = root(maximum(discriminant, zero));
-    const lanes q = -(c[2] + pick(less(c[2], zero), -spread, spread));
-    /* 0 / 0 and out of range give ends of the interval: minimum(NAN, x) is x. */
-    const lanes r0 = clamped(q / a, zero, one), r1 = clamped(c[1] / q, zero, one);
-    const mask real = less(zero, discriminant);
-    const lanes e0 = pick(real, minimum(r0, r1), zero), e1 = pick(real, maximum(r0, r1), zero);
-    const lanes f0 = cubic(c, e0), f1 = cubic(c, e1), f2 = ((c[3] + c[2]) + c[1]) + c[0];
+    lanes e[2], f[2];
+    find_turns(c, wanted, e, f);
+    const lanes end = ((c[3] + c[2]) + c[1]) + c[0];
     const lanes magnitude = size(c[0]) + size(c[1]) + size(c[2]) + size(c[3]);
-    const mask in0 = less(f0, zero), in1 = less(f1, zero), in2 = less(f2, zero);
-    const mask touch = both(less(f2, all(slack) * magnitude), less(f2, f1));
+    const mask in0 = less(f[0], zero), in1 = less(f[1], zero), in2 = less(end, zero);
+    const mask touch = both(less(end, all(slack) * magnitude), less(end, f[1]));
     const mask found = both(wanted, either(either(inside, in0), either(in1, either(in2, touch))));
-    lanes lo = pick(in0, zero, pick(in1, e0, e1)), hi = pick(in0, e0, pick(in1, e1, one));
-    const lanes f_lo = pick(in0, c[0], pick(in1, f0, f1)), f_hi = pick(in0, f0, pick(in1, f1, f2));
+    lanes lo = pick(in0, zero, pick(in1, e[0], e[1])), hi = pick(in0, e[0], pick(in1, e[1], one));
+    const lanes f_lo = pick(in0, c[0], pick(in1, f[0], f[1])), f_hi = pick(in0, f[0], pick(in1, f[1], end));
     lanes s = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
     /* A cubic that only touches ends its interval. */
     const mask search = except(both(found, either(in0, either(in1, in2))), inside);
     mask going = search;
     for (int step = 0; step < ROOT_STEPS && bits(going); step++) {
-        const lanes f = cubic(c, s), slope = (a * s + all(2) * c[2]) * s + c[1];
-        const mask below = less(f, zero);
+        const lanes value = cubic(c, s), bend = all(3) * c[3] * s + c[2], slope = (bend + c[2]) * s + c[1];
+        const mask below = less(value, zero);
         hi = pick(both(going, below), s, hi);
         lo = pick(except(going, below), s, lo);
-        const lanes newton = s - f / slope, middle = all(0.5f) * (lo + hi);
+        const lanes newton = s - value / slope, middle = all(0.5f) * (lo + hi);
         const mask held = both(less(lo - all(root_tolerance), newton), less(newton, hi + all(root_tolerance)));
         const lanes next = pick(held, clamped(newton, lo, hi), middle);
         const lanes moved = size(next - s);
         s = pick(going, next, s);
-        going = both(going, less(all(root_tolerance), moved));
+        /* What Newton's method leaves is the square of its step times bend / slope, about. */
+        const mask near = both(held, less(moved * moved * size(bend), all(root_tolerance) * size(slope)));
+        going = both(except(going, near), less(all(root_tolerance), moved));
     }
     *root_out = pick(inside, zero, pick(search, s, one));
     return found;
@@ -447,7 +467,10 @@ INLINE unsigned finish(const flight *f, swarf_packet *rays)
 static void trace(const swarf_cube_grid *grid, swarf_packet rays[], unsigned active[], int count)
 {
     flight flights[SWARF_GROUP];
-    for (int k = 0; k < count; k++) start(grid, &rays[k], &flights[k], active[k]);
+    for (int k = 0; k < count; k++) {
+        flights[k].left = mask_of(0);
+        if (active[k]) start(grid, &rays[k], &flights[k], active[k]);
+    }
     for (;;) {
         unsigned busy, left = 0;
         do {
@@ -460,7 +483,8 @@ static void trace(const swarf_cube_grid *grid, swarf_packet rays[], unsigned act
         for (int k = 0; k < count; k++)
             if (bits(flights[k].left)) solve(&flights[k]);
     }
-    for (int k = 0; k < count; k++) active[k] = finish(&flights[k], &rays[k]);
+    for (int k = 0; k < count; k++)
+        if (active[k]) active[k] = finish(&flights[k], &rays[k]);
 }
 
 static void signs(const float values[512], uint64_t words[8])
@@ -522,4 +546,4 @@ static unsigned enter(const swarf_ray_space *space, const swarf_rays *rays, swar
     return up_to(moved, leave) & rays->active;
 }
 
-const swarf_ray_kernel KERNEL_NAME = {aim, enter, trace, signs, shade, encode};
+const swarf_ray_kernel KERNEL_NAME = {aim, enter, trace, signs, shade, encode, encode_opaque};

@@ -116,7 +116,10 @@ typedef struct swarf_ray_kernel {
     /** Linear RGB of sixteen pixels. */
     void (*shade)(const swarf_tones *in, float out[3][SWARF_PACKET]);
     /** Four colours, RGBA linear and premultiplied, to bytes that are not, by a table of sRGB. */
-    void (*encode)(const float colour[16], const uint8_t srgb[SWARF_SRGB_SIZE + 1], uint8_t out[16]);
+    void (*encode)(const float colour[16], const int32_t srgb[SWARF_SRGB_SIZE + 1], uint8_t out[16]);
+    /** The same of sixteen opaque colours by channel, for the places whose bit is set; the others stay. */
+    void (*encode_opaque)(const float rgb[3][SWARF_PACKET], const int32_t srgb[SWARF_SRGB_SIZE + 1], unsigned which,
+                          uint8_t out[4 * SWARF_PACKET]);
 } swarf_ray_kernel;
 
 /** The kernels of swarf_isa_current(). */

@@ -9,14 +9,14 @@
 #include <string.h>
 
 /* IEC 61966-2-1 in eight bits, by linear value. At black, where it is steepest, an entry is a quarter of a step. */
-static uint8_t srgb[SWARF_SRGB_SIZE + 1];
+static int32_t srgb[SWARF_SRGB_SIZE + 1];
 static pthread_once_t srgb_once = PTHREAD_ONCE_INIT;
 
 static void fill_srgb(void)
 {
     for (int i = 0; i <= SWARF_SRGB_SIZE; i++) {
         const double x = (double)i / SWARF_SRGB_SIZE;
-        srgb[i] = (uint8_t)((x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055) * 255 + 0.5);
+        srgb[i] = (int32_t)((x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055) * 255 + 0.5);
     }
 }
 
@@ -77,7 +77,8 @@ swarf_status swarf_shading_make(const swarf_look *look, const swarf_picture_opti
                       light_camera[2] * look->frame.forward[axis];
     (void)vector_normalise(light);
     for (int axis = 0; axis < 3; axis++) shading.light[axis] = (float)light[axis];
-    const size_t count = options->program ? swarf_program_move_count(options->program) : 0;
+    const int by_feed = options->colouring == SWARF_COLOURING_FEED;
+    const size_t count = by_feed ? swarf_program_move_count(options->program) : 0;
     const swarf_move *moves = count ? swarf_program_moves(options->program) : NULL;
     for (size_t i = 0; i < count; i++) {
         if (swarf_move_get_kind(&moves[i]) != SWARF_MOVE_FEED || !(moves[i].feed_mm_min > 0)) continue;
@@ -228,17 +229,23 @@ int swarf_shade_is_uniform(const swarf_shading *shading)
            !look->cutter && look->section_count == 0 && !swarf_scene_fixtures(look->scene);
 }
 
-void swarf_shade_rays(const swarf_shading *shading, const swarf_rays *rays, const swarf_places *places, float (*out)[4])
+/** Light on what all rays of a packet met, if it is the stock. */
+static void light_rays(const swarf_shading *shading, const swarf_rays *rays, float lit[3][SWARF_PACKET])
 {
     swarf_tones tones;
-    float lit[3][SWARF_PACKET];
     memcpy(tones.normal, rays->normal, sizeof tones.normal);
     memcpy(tones.light, shading->light, sizeof tones.light);
     for (int ray = 0; ray < SWARF_PACKET; ray++) {
         for (int channel = 0; channel < 3; channel++) tones.base[channel][ray] = shading->options->colour[channel];
         tones.sky[ray] = tones.sun[ray] = 1;
     }
-    if (rays->hit) swarf_ray_kernel_current()->shade(&tones, lit);
+    swarf_ray_kernel_current()->shade(&tones, lit);
+}
+
+void swarf_shade_rays(const swarf_shading *shading, const swarf_rays *rays, const swarf_places *places, float (*out)[4])
+{
+    float lit[3][SWARF_PACKET];
+    if (rays->hit) light_rays(shading, rays, lit);
     for (unsigned ray = 0; ray < places->count; ray++) {
         if (!(rays->hit >> ray & 1)) {
             backdrop(shading->options, (float)(0.5 + 0.5 * places->y[ray]), out[ray]);
@@ -247,6 +254,21 @@ void swarf_shade_rays(const swarf_shading *shading, const swarf_rays *rays, cons
         for (int channel = 0; channel < 3; channel++) out[ray][channel] = lit[channel][ray];
         out[ray][3] = 1;
     }
+}
+
+void swarf_shade_hits(const swarf_shading *shading, const swarf_rays *rays, uint8_t out[SWARF_PACKET][4])
+{
+    float lit[3][SWARF_PACKET];
+    if (rays->hit == 0) return;
+    light_rays(shading, rays, lit);
+    swarf_ray_kernel_current()->encode_opaque(lit, srgb, rays->hit, out[0]);
+}
+
+void swarf_shade_backdrop(const swarf_shading *shading, double y, uint8_t out[4])
+{
+    float colour[1][4];
+    backdrop(shading->options, (float)(0.5 + 0.5 * y), colour[0]);
+    swarf_shade_encode(colour, 1, out);
 }
 
 void swarf_shade_encode(const float (*colour)[4], size_t count, uint8_t *out)

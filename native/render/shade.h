@@ -40,6 +40,10 @@ int swarf_shade_is_uniform(const swarf_shading *shading);
  *  the same as swarf_shade() makes of their sights. */
 void swarf_shade_rays(const swarf_shading *shading, const swarf_rays *rays, const swarf_places *places,
                       float (*out)[4]);
+/** The same of those rays that met something, as swarf_shade_encode() has it; the others keep what they have. */
+void swarf_shade_hits(const swarf_shading *shading, const swarf_rays *rays, uint8_t out[SWARF_PACKET][4]);
+/** What rays at this height (-1 .. 1) of the picture see that meet nothing, as bytes. */
+void swarf_shade_backdrop(const swarf_shading *shading, double y, uint8_t out[4]);
 
 /** Colours to eight bits per channel: IEC 61966-2-1 (sRGB), not premultiplied. */
 void swarf_shade_encode(const float (*colour)[4], size_t count, uint8_t *out);

@@ -63,12 +63,13 @@ static void check_face(swarf_scene *scene, const swarf_box *box)
     free(again);
 }
 
-/** Pictures of one ray a square and nothing else are made in a way of their own: the same bytes as by the way of all
- *  others, which whoever wants to know what is seen gets. */
+/** Pictures of one ray a square and nothing else are made in a way of their own: the same bytes, by any kernels, as by
+ *  the way of all others, which whoever wants to know what is seen gets. */
 static void check_plain(swarf_scene *scene, test_random *random)
 {
     enum { WIDTH = 71, HEIGHT = 45, PIXELS = WIDTH * HEIGHT };
     static uint8_t plain[4 * PIXELS], other[4 * PIXELS], seen[PIXELS];
+    const swarf_isa best = swarf_isa_current();
     const swarf_picture_buffers out = {.size = sizeof out, .rgba = other, .seen = seen};
     swarf_picture_options options = swarf_picture_options_default();
     options.width = WIDTH;
@@ -80,12 +81,16 @@ static void check_plain(swarf_scene *scene, test_random *random)
         for (int axis = 0; axis < 3; axis++) camera.eye[axis] = camera.target[axis] + test_random_in(random, -90, 90);
         camera.perspective = round & 1;
         options.coarse = 1 + round % 3;
-        if (!CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, plain)) ||
-            !CHECK_OK(swarf_scene_render(scene, &camera, &options, NULL, &out)))
-            return;
-        CHECK(memcmp(plain, other, sizeof plain) == 0);
+        options.background[3] = round % 4 ? 1 : 0.3f;
+        if (!CHECK_OK(swarf_scene_render(scene, &camera, &options, NULL, &out))) break;
         CHECK(memchr(seen, SWARF_SEEN_STOCK, sizeof seen) != NULL);
+        for (int isa = SWARF_ISA_SCALAR; isa <= (int)best; isa++) {
+            if (swarf_isa_set((swarf_isa)isa) != SWARF_OK) continue;
+            CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, plain));
+            CHECK(memcmp(plain, other, sizeof plain) == 0);
+        }
     }
+    CHECK_OK(swarf_isa_set(best));
 }
 
 /** Perspective and a gradient: opaque everywhere, darker from bottom to top along the rim, which shows no stock. */
