@@ -231,6 +231,10 @@ static void put_colours(const swarf_canvas *c, size_t row, uint8_t *rgba)
     enum { PART = 64 };
     const size_t width = (size_t)c->options->width;
     float colour[PART][4];
+    if (c->bytes) {
+        memcpy(rgba + 4 * row * width, c->bytes + 4 * row * width, 4 * width);
+        return;
+    }
     if (c->coarse == 1) {
         swarf_shade_encode(c->colour + row * width, width, rgba + 4 * row * width);
         return;
@@ -248,7 +252,7 @@ static swarf_status put_row(void *context, size_t row)
     const swarf_canvas *c = o->canvas;
     const int32_t width = c->options->width, y = (int32_t)row / c->coarse;
     const int is_more = o->to->seen || o->to->move || o->to->normal || o->to->depth || o->to->position;
-    if (o->to->rgba && !c->bytes) put_colours(c, row, o->to->rgba);
+    if (o->to->rgba) put_colours(c, row, o->to->rgba);
     for (int32_t i = 0; is_more && i < width; i++) {
         const int32_t x = i / c->coarse;
         const size_t at = row * (size_t)width + (size_t)i, square = swarf_canvas_at(c, x, y);
@@ -347,13 +351,13 @@ static swarf_status render(swarf_scene *scene, const swarf_camera *camera, swarf
     SWARF_TRY(swarf_shading_make(&c->look, options, &c->shading));
     const size_t squares = (size_t)c->width * (size_t)c->height;
     const size_t middles = is_plain(scene, &c->shading, out) ? 0 : squares;
-    if (!middles && c->coarse == 1) c->bytes = out->rgba;
     void *scratch = swarf_scene_scratch(scene, squares * sizeof *c->colour + middles * sizeof *c->middle);
     swarf_recall *const recall = swarf_scene_recall(scene);
     swarf_outlook outlook;
     swarf_outlook_make(camera, options, c->coarse, &outlook);
     const int is_new = !middles || !swarf_recall_has(recall, &outlook);
     c->colour = scratch;
+    c->bytes = !middles && c->coarse == 1 ? scratch : NULL; /* then there are no colours */
     c->middle = middles ? (swarf_sight *)(void *)(c->colour + squares) : NULL;
     if (!scratch)
         return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for %d x %d pixels", (int)options->width,

@@ -4,7 +4,7 @@
  *   middle   one sight per grid square (a pixel, or coarse * coarse of them), rows from the top; NULL in a plain
  *            picture, which has no use for them once they are shaded
  *   colour   of the squares, linear, premultiplied
- *   bytes    of a plain picture with one ray per pixel, whose colours go right there; else NULL
+ *   bytes    RGBA of the pixels of a plain picture with one ray for each, in place of colours; else NULL
  *   sky      how much of the sky is open, per square; NULL: all of it; the recall's, as is the next
  *   sun      255 where the light reaches, per square; NULL: everywhere
  *   edge     how much of an edge the middle of a square is on, 0 .. 255; NULL: edges are not drawn

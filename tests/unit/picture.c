@@ -165,10 +165,12 @@ static int stop_after(void *user, double fraction)
     return (*left)-- <= 0;
 }
 
-/** Cancelled at the k-th report: the pixels stay as they were, and the scene goes on working. */
-static void check_cancel(swarf_scene *scene, const swarf_box *box, test_random *random)
+/** Cancelled at the k-th report: the pixels stay as they were, and the scene goes on working. plain: nothing but one
+ *  ray per pixel. */
+static void check_cancel(swarf_scene *scene, const swarf_box *box, int plain, test_random *random)
 {
     swarf_picture_options options = swarf_picture_options_default();
+    if (plain) options.samples = 1, options.edges = options.occlusion = 0;
     options.width = 1600;
     options.height = 1200;
     const size_t bytes = 4 * 1600 * 1200;
@@ -176,8 +178,10 @@ static void check_cancel(swarf_scene *scene, const swarf_box *box, test_random *
     swarf_camera camera;
     if (!CHECK(rgba) || !CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 1, box, 4.0 / 3, &camera))) return;
     int cancelled = 0;
+    CHECK_OK(swarf_progress_interval_set(0));
+    CHECK_OK(swarf_threads_set(1)); /* every piece of the work is reported */
     for (int trial = 0; trial < 6; trial++) {
-        int left = trial ? (int)test_random_below(random, 20) : 0;
+        int left = trial ? (int)test_random_below(random, 200) : 0;
         const swarf_progress progress = {stop_after, &left};
         memset(rgba, 0xab, bytes);
         const swarf_status status = swarf_scene_picture(scene, &camera, &options, &progress, rgba);
@@ -190,7 +194,9 @@ static void check_cancel(swarf_scene *scene, const swarf_box *box, test_random *
                 break;
             }
     }
-    CHECK(cancelled > 0);
+    CHECK_OK(swarf_progress_interval_set(25));
+    CHECK_OK(swarf_threads_set(0));
+    CHECK(cancelled > 1);
     free(rgba);
 }
 
@@ -365,7 +371,8 @@ int main(void)
         check_plain(scene, &random);
         check_background(scene, &box);
         check_refusals(scene, &box);
-        check_cancel(scene, &box, &random);
+        check_cancel(scene, &box, 0, &random);
+        check_cancel(scene, &box, 1, &random);
         check_progress(scene, &box);
         check_recall(stock, scene, &box);
     }
