@@ -261,7 +261,7 @@ class Verifying(PanelTest):
         from freecad.swarf_cam import checks
 
         run, clearances = checks.run, []
-        checks.run = lambda *what: clearances.append(what[-1]) or run(*what)
+        checks.run = lambda *what: clearances.append(what[5]) or run(*what)
         panel.findings.run.click()
         panel.checking.join(60)
         page.clearance.setValue(0.0)
@@ -356,6 +356,23 @@ class Verifying(PanelTest):
         self.checked()
         assert panel.checking.outcome.verification.result is measured, "nothing was cut or measured again"
         assert not [item for item in panel.checking.found if abs(abs(item.amount) - 0.2) < 0.01]
+        # what is meant to be left is no deviation
+        panel.tools.tolerance.setValue(self.settings.TOLERANCE_MM)
+        panel.tabs.setCurrentWidget(panel.deviation)
+        panel.deviation.allowance.setValue(0.2)
+        self.settle()
+        for point, value in expected.items():
+            assert abs(view.value_under(*pixel(point)) - value + 0.2) < 0.01, (point, view.value_under(*pixel(point)))
+        self.checked()
+        assert panel.checking.outcome.verification.result is measured, "nothing was cut or measured again"
+        assert panel.checking.outcome.verification.allowance == 0.2
+        assert not [item for item in panel.checking.found if abs(item.amount - 0.2) < 0.01 and item.kind == "excess"]
+        mouse(view, "move", *pixel(floor))
+        screenshot("panel-allowance.png")
+        panel.deviation.allowance.setValue(0.0)
+        panel.tools.tolerance.setValue(0.3)
+        self.checked()
+        panel.tabs.setCurrentWidget(panel.findings)
         application = QtWidgets.QApplication.instance()
         style = application.styleSheet()
         application.setStyleSheet("QWidget { background-color: #35393e; color: #f0f0f0 }")

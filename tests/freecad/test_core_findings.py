@@ -2,6 +2,7 @@
 """Findings without Qt and FreeCAD: the checks of a job, their places in the program, the order they are shown in."""
 
 import array
+import dataclasses
 import itertools
 import math
 import zlib
@@ -102,6 +103,11 @@ def test_another_tolerance_is_judged_without_cutting_again(swarf):
     first = checks.run(job, 0.5, 0.05, lambda done: False)
     wide = checks.judge(first, 1.0, lambda done: False)
     assert wide.verification.result is first.verification.result, "nothing was cut again"
+    allowed = checks.judge(first, 0.05, lambda done: False, 0.28)
+    assert allowed.verification.result is first.verification.result and allowed.verification.allowance == 0.28
+    left = checks.run(job, 0.5, 0.05, lambda done: False, allowance_mm=0.28)
+    assert findings.from_verdicts(allowed.verdicts, listing) == findings.from_verdicts(left.verdicts, listing)
+    assert allowed.deviation.not_reached_area < first.deviation.not_reached_area, "0.3 mm are left"
     again = checks.run(job, 0.5, 1.0, lambda done: False)
     assert findings.from_verdicts(wide.verdicts, listing) == findings.from_verdicts(again.verdicts, listing)
     assert wide.deviation.gouge_area < first.deviation.gouge_area
@@ -259,11 +265,44 @@ def test_a_tinted_frame_holds_the_deviations(swarf):
         assert middle == pytest.approx(0.3, abs=0.01) and math.isnan(frame.values[0, 0])
     assert watched.draw(sessions.View(camera, 200, 150), 0.0, None).values is None
     assert watched.pick(view, 0.0, 0.0, 0).deviation == pytest.approx(0.3, abs=0.01)
+    allowed = dataclasses.replace(view, allowance_mm=0.25)
+    assert watched.draw(allowed, 0.0, None).values[75, 100] == pytest.approx(0.05, abs=0.01)
+    assert watched.pick(allowed, 0.0, 0.0, 0).deviation == pytest.approx(0.05, abs=0.01)
     # the slot's floor, 2 mm deep
     while watched.step(len(data.moves), 1.0) != len(data.moves):
         pass
     x, y, _ = camera.project((20, 5, -2), 4 / 3)
     assert watched.pick(view, x, y, len(data.moves)).deviation == pytest.approx(-1.7, abs=0.02)
+
+
+def test_the_set_up_before_is_shown_exactly(swarf):
+    from swarf_cam import session as sessions
+
+    before, _ = make()
+    operations = [program.Operation("Across", [Command(line) for line in ("G0 X-5 Y15", "G0 Z-1", "G1 X45 F10")], 1, "a",
+                                    [Command("M6 T1"), Command("M3 S1000")])]
+    data = dataclasses.replace(before, name="Next", moves=program.build(operations), operations=operations,
+                               stock={"kind": "result", "job": before})
+    watched = sessions.Session(data, 0.5, lambda done: False)
+    camera = swarf.Camera.view("top", watched.box, 4 / 3)
+    view = sessions.View(camera, 400, 300, (("colouring", "operation"), ("selected", (0, len(data.moves)))))
+    end = float(len(data.moves))
+    while watched.step(end, 1.0) != end:
+        pass
+    for y, bottom, made in ((5, -2, False), (8 - 1e-3, -2, None), (8 + 1e-3, 0, None), (10, 0, False), (12 - 1e-3, 0, None),
+                            (12 + 1e-3, -1, True)):
+        x, y, _ = camera.project((10, y, bottom), 4 / 3)
+        found = watched.pick(view, x, y, end)
+        assert found.point[2] == pytest.approx(bottom, abs=1e-6), found
+        assert made is None or (found.move >= 0, found.line >= 0) == (made, made), found
+    # what this set-up cut has its operation's colour, what the one before cut has not
+    picture = watched.draw(view, end, None)
+
+    def colour(y, z):
+        x, y, _ = camera.project((10, y, z), 4 / 3)
+        at = 4 * (int((1 - y) / 2 * 300) * 400 + int((x + 1) / 2 * 400))
+        return picture.rgba[at:at + 3]
+    assert colour(5, -2) != colour(15, -1) and max(colour(5, -2)) - min(colour(5, -2)) < 40, "as the stock's own face"
 
 
 def test_design_and_both_in_the_picture(swarf, tmp_path):

@@ -27,9 +27,9 @@ class Outcome:
         return self.verification.deviation if self.verification is not None else None
 
 
-def run(job, voxel_mm, tolerance_mm, progress, stop=False, clearance_mm=0.0):
+def run(job, voxel_mm, tolerance_mm, progress, stop=False, clearance_mm=0.0, allowance_mm=0.0):
     """Outcome of a swarf.Job; what its document accepts is accepted. stop: at the first error, unless that is accepted:
-    the rest is then looked at as without it.
+    the rest is then looked at as without it. allowance_mm: meant to be left on the design.
 
     progress as in native.simulate(). MemoryError, swarf.Error.
     """
@@ -40,8 +40,8 @@ def run(job, voxel_mm, tolerance_mm, progress, stop=False, clearance_mm=0.0):
     swarf, report, doubts = native.load(), _stages(progress, 0.5 if stop else 0.0, 1.0), []
     if job.design is not None:
         try:
-            made = swarf.verify(job, tolerance=tolerance_mm, voxel=voxel_mm, loads=False, clearance=clearance_mm,
-                                progress=report)
+            made = swarf.verify(job, tolerance=tolerance_mm, allowance=allowance_mm, voxel=voxel_mm, loads=False,
+                                clearance=clearance_mm, progress=report)
             return Outcome(made.findings, made)
         except swarf.GeometryError as error:
             doubts.append(_doubt(str(error)))
@@ -85,11 +85,11 @@ def _check(job, voxel_mm, doubts, report, stop, clearance_mm):
     return Outcome(verdicts, stopped=not ended and serious), ended
 
 
-def judge(outcome, tolerance_mm, progress):
-    """The Outcome by another tolerance, without cutting or measuring again."""
+def judge(outcome, tolerance_mm, progress, allowance_mm=0.0):
+    """The Outcome by another tolerance and allowance, without cutting or measuring again."""
     if outcome.verification is None:
         return outcome
-    made = outcome.verification.judge(tolerance_mm, progress=progress)
+    made = replace(outcome.verification, allowance=allowance_mm).judge(tolerance_mm, progress=progress)
     return Outcome(made.findings, made)
 
 

@@ -57,6 +57,7 @@ class View:
     show_cutter: bool = True
     show_path: bool = False
     tolerance_mm: float = 0.0  # > 0: the colours of the deviation from the design
+    allowance_mm: float = 0.0  # meant to be left on the design: no deviation
     shown: str = STOCK
 
 
@@ -118,10 +119,11 @@ class Session:
         self.data, self.voxel_mm = data, voxel_mm
         self.job = native.to_job(data)
         self.program, self.tools = self.job.program, self.job.tools
-        from swarf.simulate import make_stock, stock_box  # of the package, once it is known to be there
+        from swarf.stocks import make_first, stock_box  # of the package, once it is known to be there
 
         self.box = tuple(tuple(float(value) for value in corner) for corner in stock_box(self.job.stock))
-        stock = make_stock(self.job.stock, voxel=voxel_mm, progress=lambda done: progress(OPEN_SHARE * done))
+        first = make_first(self.job.stock, voxel=voxel_mm, progress=lambda done: progress(OPEN_SHARE * done))
+        stock = first.stock
         self.clock = Clock(data.moves)
         self.listing = Listing(data.moves, data.operations)
         self._keywords = known_keywords()
@@ -134,9 +136,9 @@ class Session:
         self._coarse = {False: 1, True: COARSE_MAX}  # of pictures with deviations, which cost most
         self._design, self._design_is_bad, self._design_scene = None, False, None
         self._stock, self._scene = stock, swarf.Scene(stock)
-        self._exact = hasattr(swarf.Scene, "set_surface")  # the native module can show more than the voxels
+        self._exact = hasattr(swarf.Scene, "show_surface")  # the native module can show more than the voxels
         if self._exact:
-            self._scene.set_surface(stock, self.program, self.tools)  # while it is the first one
+            self._scene.show_surface(first.surface(self.program, self.tools))
         if hasattr(swarf.Scene, "set_fixtures"):
             self._scene.set_fixtures(self.job.fixtures)
         limit = int(HISTORY_SHARE * native.estimate(*self.box, voxel_mm))
@@ -195,7 +197,8 @@ class Session:
         look["colour"] = TINTED_MATERIAL
         picture = self._current_scene().render(view.camera, view.width, view.height, progress=progress,
                                                buffers=("rgba", "depth", "position", "seen"), **look)
-        return picture, picture.show_deviation(design, view.tolerance_mm, progress=progress)
+        return picture, picture.show_deviation(
+            design, view.tolerance_mm, allowance=view.allowance_mm, progress=progress)
 
     def _design_picture(self, view, tolerance_mm, progress, **how):
         """(picture, values) of the design alone, in the colours of the stock's deviation where there is a tolerance;
@@ -211,7 +214,8 @@ class Session:
             **{key: value for key, value in look.items() if key in self._keywords})
         if tolerance_mm <= 0:
             return picture, None
-        return picture, picture.show_deviation(self._stock, tolerance_mm, progress=progress)
+        return picture, picture.show_deviation(
+            self._stock, tolerance_mm, allowance=view.allowance_mm, progress=progress)
 
     def _compose(self, view, place, progress, **how):
         """(rgba, depth, values) of what a view shows."""
@@ -274,7 +278,7 @@ class Session:
                         slope_deg=math.degrees(math.acos(min(max(found.normal[2], -1.0), 1.0))))
         design = self._solid()
         if design is not None:
-            result.deviation = design.distance([found.point])[0]
+            result.deviation = design.distance([found.point])[0] - view.allowance_mm
         if move >= 0:
             tool, operation = self.data.moves.sections[int(self.data.moves.row(move)[2])][:2]
             result.move, result.line = move, self.listing.line_of(move)

@@ -915,6 +915,10 @@
             <translation>max.</translation>
         </message>
         <message>
+            <source>mm over {0}</source>
+            <translation>mm über {0}</translation>
+        </message>
+        <message>
             <source>none</source>
             <translation>keine</translation>
         </message>

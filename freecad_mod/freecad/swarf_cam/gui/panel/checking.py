@@ -79,7 +79,7 @@ class Checking:
             self._later.start()
 
     def judge_soon(self):
-        """Judge by another tolerance, when the last call of this was a while ago."""
+        """Judge by another tolerance or allowance, when the last call of this was a while ago."""
         if self.outcome is not None or self.running:
             self._later.start()
 
@@ -104,8 +104,9 @@ class Checking:
         self._later.stop()
         self._again = False
         tolerance, stop, clearance = settings.tolerance(), settings.flag("StopAtError"), settings.clearance()
+        allowance = settings.allowance()
         self._run(translate("Swarf", "Checking ..."), lambda progress: checks.run(
-            session.job, session.voxel_mm, tolerance, progress, stop, clearance))
+            session.job, session.voxel_mm, tolerance, progress, stop, clearance, allowance))
 
     def _judge(self):
         if self._panel.session is None:
@@ -113,8 +114,9 @@ class Checking:
         if self._again or self.running or self.outcome is None or self.outcome.verification is None:
             self.start()
             return
-        outcome, tolerance = self.outcome, settings.tolerance()
-        self._run(translate("Swarf", "Judging ..."), lambda progress: checks.judge(outcome, tolerance, progress))
+        outcome, tolerance, allowance = self.outcome, settings.tolerance(), settings.allowance()
+        self._run(translate("Swarf", "Judging ..."),
+                  lambda progress: checks.judge(outcome, tolerance, progress, allowance))
 
     def _run(self, text, call):
         panel, session = self._panel, self._panel.session

@@ -6,7 +6,7 @@ import math
 import FreeCAD
 
 from ...core import histogram, legend
-from .. import colours, numbers
+from .. import colours, numbers, settings
 from ..qt import QtCore, QtGui, QtWidgets, place_of
 
 translate = FreeCAD.Qt.translate
@@ -112,7 +112,10 @@ def area_text(area):
 
 
 class DeviationPage(QtWidgets.QWidget):
-    """Histogram and numbers of a checks.Outcome."""
+    """Histogram and numbers of a checks.Outcome, and the allowance that they are over. Tells by allowed another one, which
+    is kept in the settings."""
+
+    allowed = QtCore.Signal()
 
     def __init__(self, swarf, parent=None):
         super().__init__(parent)
@@ -131,7 +134,28 @@ class DeviationPage(QtWidgets.QWidget):
             value.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
             form.addRow(translate("Swarf", text), value)
             self._values[name] = value
+        self.allowance = QtWidgets.QDoubleSpinBox()
+        self.allowance.setObjectName("SwarfAllowance")
+        self.allowance.setToolTip(translate("Swarf", "What is meant to be left on the model: it counts as no deviation"))
+        self.allowance.setDecimals(3)
+        self.allowance.setRange(0.0, settings.ALLOWANCE_MAX_MM)
+        self.allowance.setSingleStep(0.05)
+        self.allowance.setSuffix(" mm")
+        self.allowance.setKeyboardTracking(False)
+        self.show_allowance()
+        self.allowance.valueChanged.connect(self._allow)
+        form.addRow(translate("Swarf", "Allowance"), self.allowance)
         row.addLayout(form)
+
+    def show_allowance(self):
+        """As the settings have it."""
+        self.allowance.blockSignals(True)
+        self.allowance.setValue(settings.allowance())
+        self.allowance.blockSignals(False)
+
+    def _allow(self, value):
+        settings.set_allowance(value)
+        self.allowed.emit()
 
     def show_outcome(self, outcome):
         """What the checks came to, None: nothing yet."""

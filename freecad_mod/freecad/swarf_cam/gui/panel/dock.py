@@ -129,6 +129,8 @@ class LivePanel(QtWidgets.QDockWidget):
         self.tools.coloured.connect(self.wish)
         self.tools.toleranced.connect(self.wish)
         self.tools.toleranced.connect(self.checking.judge_soon)
+        self.deviation.allowed.connect(self.wish)
+        self.deviation.allowed.connect(self.checking.judge_soon)
         self.setup.cleared.connect(self.checking.check_soon)
         self.section.changed.connect(self.wish)
         self.view.camera_changed.connect(self.wish)
@@ -200,6 +202,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.setting_up.show()
         self.accuracy.measured(session, seconds)
         self.tools.open(session.job.design is not None)
+        self.deviation.show_allowance()
         self.section.open(session.box)
         self.view.open(session.box)
         self.checking.open(session)
@@ -268,11 +271,11 @@ class LivePanel(QtWidgets.QDockWidget):
         """session.View of what is shown, or of another size (width, height) of the picture."""
         width, height = size or self.view.pixels()
         return sessions.View(self.view.camera.copy(), width, height, self._look(), settings.flag("ShowCutter"),
-                             settings.flag("ShowPath"), self.tools.tolerance_mm, self.tools.shown)
+                             settings.flag("ShowPath"), self.tools.tolerance_mm, settings.allowance(), self.tools.shown)
 
     def wish(self):
         """Have the picture drawn as it is to be shown now."""
-        self.view.set_legend(self.tools.tolerance_mm)
+        self.view.set_legend(self.tools.tolerance_mm, settings.allowance())
         if self.session is not None and self.view.camera is not None:
             self.opening.wish(self.transport.wanted, self.current_view())
 

@@ -135,8 +135,8 @@ def _paint_pins(view, painter):
 class Legend:
     """The scale of deviations at the right border, with a hand for what is under the mouse."""
 
-    def __init__(self, swarf, tolerance_mm):
-        self.tolerance_mm = tolerance_mm
+    def __init__(self, swarf, tolerance_mm, allowance_mm):
+        self.tolerance_mm, self.allowance_mm = tolerance_mm, allowance_mm
         values = [legend.value_at(1 - (row + 0.5) / LEGEND_ROWS, tolerance_mm) for row in range(LEGEND_ROWS)]
         self._bytes = colours.of_deviations(swarf, values, tolerance_mm)
         self._strip = QtGui.QImage(self._bytes, 1, LEGEND_ROWS, 4, QtGui.QImage.Format_RGBA8888)  # the bytes stay
@@ -150,7 +150,11 @@ class Legend:
         font.setPixelSize(11)
         metrics = QtGui.QFontMetricsF(font)
         ticks = [(share, numbers.short(value, True)) for share, value in legend.ticks(self.tolerance_mm)]
-        room = max(metrics.boundingRect(text).width() for _, text in ticks) + 4
+        title = "mm"
+        if self.allowance_mm > 0:
+            title = translate("Swarf", "mm over {0}").format(numbers.short(self.allowance_mm))
+        room = max(*(metrics.boundingRect(text).width() for _, text in ticks),
+                   metrics.boundingRect(title).width() - LEGEND_WIDTH - 6) + 4
         left, top = view.width() - LEGEND_WIDTH - room - 20, 2 * CUBE_MARGIN + 22
         bar = QtCore.QRectF(left, top, LEGEND_WIDTH, height)
         ink = QtGui.QColor("#f2f4f5") if dark else QtGui.QColor("#1d2329")
@@ -161,7 +165,7 @@ class Legend:
         painter.drawImage(bar, self._strip)
         painter.setFont(font)
         painter.setPen(ink)
-        painter.drawText(QtCore.QRectF(left - 8, top - 19, LEGEND_WIDTH + room + 18, 16), QtCore.Qt.AlignCenter, "mm")
+        painter.drawText(QtCore.QRectF(left - 8, top - 19, LEGEND_WIDTH + room + 18, 16), QtCore.Qt.AlignCenter, title)
         for share, text in ticks:
             y = top + (1 - share) * height
             painter.drawLine(QtCore.QLineF(bar.right(), y, bar.right() + 3, y))

@@ -105,10 +105,11 @@ class PictureView(QtWidgets.QWidget):
                                    QtGui.QImage.Format_RGBA8888)  # frame keeps the bytes alive
         self.update()
 
-    def set_legend(self, tolerance_mm):
-        """Of a picture in the colours of the deviation; 0: it has others."""
-        if tolerance_mm != (self.legend.tolerance_mm if self.legend is not None else 0.0):
-            self.legend = overlay.Legend(self._swarf, tolerance_mm) if tolerance_mm > 0 else None
+    def set_legend(self, tolerance_mm, allowance_mm):
+        """Of a picture in the colours of the deviation, over an allowance; tolerance 0: it has others."""
+        wanted = (tolerance_mm, allowance_mm) if tolerance_mm > 0 else None
+        if wanted != (None if self.legend is None else (self.legend.tolerance_mm, self.legend.allowance_mm)):
+            self.legend = None if wanted is None else overlay.Legend(self._swarf, *wanted)
             self.update()
 
     def _set_hover(self, value):
