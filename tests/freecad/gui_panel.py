@@ -264,6 +264,8 @@ class Watching(PanelTest):
         wait_for(lambda: german.view.frame is not None and german.view.frame.sharp, "the second panel's picture")
         screenshot("panel-german.png")
         self.check_numbers(german)
+        bar = german.tabs.tabBar()
+        assert bar.tabRect(0).left() >= 0 and bar.tabRect(bar.count() - 1).right() <= german.tabs.width(), "a tab is hidden"
         assert german.width() < 800, "the dock takes too much of a small screen: %d" % german.width()
         german.close()
         wait_for(lambda: german.opening.ended, "the second panel's end")
@@ -315,6 +317,7 @@ class Watching(PanelTest):
         assert panel.player.selected == line
         assert panel.program.currentIndex().row() == line, (panel.program.currentIndex().row(), line)
         assert panel.operations.currentItem() is panel.operations.topLevelItem(0)
+        assert panel.view.caption[0] == "Facing" and panel.view.caption[1].startswith("T1 "), panel.view.caption
         wait_for(lambda: self.is_marked((60, 10, -1)), "the line's faces to stand out")
         assert not self.is_marked((25, 25, -5))
         self.settle()

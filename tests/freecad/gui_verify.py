@@ -166,6 +166,7 @@ class Verifying(PanelTest):
         place = panel.session.listing.operation_begin[1] - 1.5
         panel.player.seek(place)
         bare = self.image()
+        assert page.add.isEnabled() and not page.remove.isEnabled()
         Gui.Selection.clearSelection()
         page.add.click()
         assert "Select" in panel.banner.text.text(), panel.banner.text.text()
@@ -366,6 +367,7 @@ class Verifying(PanelTest):
         self.checked()
         assert panel.checking.outcome.verification.result is measured, "nothing was cut or measured again"
         assert panel.checking.outcome.verification.allowance == 0.2
+        assert panel.findChild(QtWidgets.QLabel, "SwarfDeviation-range").text().startswith("-2.2")
         assert not [item for item in panel.checking.found if abs(item.amount - 0.2) < 0.01 and item.kind == "excess"]
         mouse(view, "move", *pixel(floor))
         screenshot("panel-allowance.png")

@@ -148,7 +148,7 @@
         </message>
         <message>
             <source>Accuracy</source>
-            <translation>Genauigkeit</translation>
+            <translation>Voxel</translation>
         </message>
         <message>
             <source>Add fixtures</source>
@@ -468,7 +468,7 @@
         </message>
         <message>
             <source>Not enough memory: {0} Choose larger voxels on the page Accuracy.</source>
-            <translation>Zu wenig Speicher: {0} Wählen Sie auf der Seite Genauigkeit größere Voxel.</translation>
+            <translation>Zu wenig Speicher: {0} Wählen Sie auf der Seite Voxel größere.</translation>
         </message>
         <message>
             <source>Not reached</source>

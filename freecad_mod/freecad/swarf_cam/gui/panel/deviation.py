@@ -111,6 +111,11 @@ def area_text(area):
     return numbers.text(area / 100, 1) + " cm²" if area >= 1000 else numbers.text(area, 1) + " mm²"
 
 
+def volume_text(volume, allowance_mm):
+    """A volume behind an area. Volumes are measured from the model: over an allowance there are none to tell."""
+    return "" if allowance_mm > 0 else ", %s mm³" % numbers.text(volume, 1)
+
+
 class DeviationPage(QtWidgets.QWidget):
     """Histogram and numbers of a checks.Outcome, and the allowance that they are over. Tells by allowed another one, which
     is kept in the settings."""
@@ -174,8 +179,8 @@ class DeviationPage(QtWidgets.QWidget):
                 ("verdict", translate("Swarf", "passed") if made.passed else translate("Swarf", "FAILED")),
                 ("good", "%s (%s %%)" % (
                     area_text(good), numbers.text(100 * good / deviation.area if deviation.area else 0.0, 2))),
-                ("excess", "%s, %s mm³" % (area_text(deviation.excess_area), numbers.text(volumes.excess_mm3, 1))),
-                ("gouge", "%s, %s mm³" % (area_text(deviation.gouge_area), numbers.text(volumes.gouge_mm3, 1))),
+                ("excess", area_text(deviation.excess_area) + volume_text(volumes.excess_mm3, made.allowance)),
+                ("gouge", area_text(deviation.gouge_area) + volume_text(volumes.gouge_mm3, made.allowance)),
                 ("unreached", area_text(deviation.not_reached_area)),
                 ("range", "%s … %s mm" % (numbers.deviation(deviation.least), numbers.deviation(deviation.most))),
                 ("middle", "%s … %s mm" % (numbers.deviation(low), numbers.deviation(high))),

@@ -131,14 +131,14 @@ class Player:
         session = panel.session
         listing, last = session.listing, len(session.clock)
         move = min(int(place), max(last - 1, 0))
-        line, operation = listing.line_of(move), listing.operation_at(move)
+        line, operation, tool = listing.line_of(move), listing.operation_at(move), session.tool_at(place)
         if self.selected is not None and place == self._stood:
             line, operation = self.selected, listing.operation[self.selected]
+            tool = session.tool_at(listing.moves_of(line)[0])
         panel.timeline.set_place(place)
         panel.bar.set_clock(self.transport.time, session.clock.seconds)
         panel.program.set_current(line)
         panel.operations.set_current(operation)
-        tool = session.tool_at(place)
         name = session.data.tools.get(tool, ("",))[0]
         detail = ["T%d %s" % (tool, name)] if tool >= 0 else []
         if listing.number[line]:

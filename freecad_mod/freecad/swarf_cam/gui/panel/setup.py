@@ -85,6 +85,7 @@ class SetupPage(QtWidgets.QWidget):
         self.remove.setObjectName("SwarfRemoveFixture")
         self.remove.clicked.connect(lambda *_: self._remove())
         buttons.addWidget(self.remove)
+        self._show_choice()
         column.addLayout(buttons)
         return column
 
