@@ -7,6 +7,7 @@
 #include "base/status.h"
 #include "base/weld.h"
 #include "mesh/intersect.h"
+#include "mesh/known.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -211,6 +212,7 @@ typedef struct stage {
     const swarf_progress *progress;
     swarf_facets *facets;
     swarf_facets_memo *memo;
+    swarf_facets_known *known;
     swarf_contour_report *report;
 } stage;
 
@@ -229,8 +231,13 @@ static swarf_status find_pairs(const stage *s, int first, found *out)
     const size_t own = s->facets->facet_count;
     if (band && band->below.facet_count) SWARF_TRY(append_below(&band->below, s->facets));
     size_t all = 0;
-    const swarf_status status =
-        swarf_facets_intersect(s->facets, first ? s->progress : NULL, 0.9, 0.98, &out->pairs, &all);
+    uint8_t *fresh = malloc(s->facets->facet_count + 1);
+    swarf_status status = fresh ? swarf_facets_known_tell(s->known, s->facets, fresh)
+                                : swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    if (status == SWARF_OK)
+        status = swarf_facets_intersect(s->facets, fresh, first ? s->progress : NULL, 0.9, 0.98, &out->pairs, &all);
+    free(fresh);
+    if (status == SWARF_OK && all > 0) status = swarf_facets_known_take(s->known, s->facets, out->pairs, all);
     s->facets->facet_count = own;
     SWARF_TRY(status);
     for (size_t i = 0; i < all; i++) {
@@ -311,7 +318,7 @@ static swarf_status look_closely(const stage *s, size_t *count)
     free(marks);
     swarf_facet_pair *pairs;
     size_t all;
-    SWARF_TRY(swarf_facets_intersect(facets, NULL, 0, 1, &pairs, &all));
+    SWARF_TRY(swarf_facets_intersect(facets, NULL, NULL, 0, 1, &pairs, &all));
     *count = 0;
     for (size_t i = 0; i < all; i++) {
         if (facets->facet[pairs[i].a].beyond && facets->facet[pairs[i].b].beyond) continue;
@@ -363,7 +370,8 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
                                   swarf_facets *facets, swarf_contour_report *report)
 {
     swarf_facets_memo memo = {0};
-    const stage s = {work, options, progress, facets, &memo, report};
+    swarf_facets_known known = {0};
+    const stage s = {work, options, progress, facets, &memo, &known, report};
     swarf_contour_table_fill(&work->table);
     SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, progress, 0, 0.3));
     SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, progress, 0.3, 0.6));
@@ -378,6 +386,7 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
     }
     const swarf_status status = settle(&s);
     swarf_facets_memo_free(&memo);
+    swarf_facets_known_free(&known);
     SWARF_TRY(status);
     size_t own = 0;
     for (size_t f = 0; f < facets->facet_count; f++) {

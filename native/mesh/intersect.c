@@ -35,12 +35,14 @@ typedef struct key {
 
 typedef struct tree {
     const swarf_facets *facets;
+    const uint8_t *fresh; /* of the facets, NULL: all are */
     double step;
     key *keys;   /* the facets in order */
     extent *own; /* of the facets in that order */
     size_t level_first[LEVELS], level_count[LEVELS];
     int levels;
     extent *boxes;
+    uint8_t *any_fresh; /* of the boxes */
     found *parts;
 } tree;
 
@@ -163,10 +165,14 @@ static swarf_status make_leaves(void *context, size_t index)
         int32_t p[3][3];
         corners_of(t, t->keys[i].facet, p);
         t->own[i] = extent_of(p);
-        if (i % LEAF == 0)
+        const uint8_t fresh = !t->fresh || t->fresh[t->keys[i].facet];
+        if (i % LEAF == 0) {
             t->boxes[i / LEAF] = t->own[i];
-        else
+            t->any_fresh[i / LEAF] = fresh;
+        } else {
             widen(&t->boxes[i / LEAF], &t->own[i]);
+            t->any_fresh[i / LEAF] |= fresh;
+        }
     }
     return SWARF_OK;
 }
@@ -187,15 +193,19 @@ static swarf_status build(tree *t)
     }
     t->boxes = malloc((total + 1) * sizeof *t->boxes);
     t->own = malloc((count + 1) * sizeof *t->own);
-    if (!t->boxes || !t->own)
+    t->any_fresh = malloc(total + 1);
+    if (!t->boxes || !t->own || !t->any_fresh)
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
     SWARF_TRY(swarf_parallel_for(chunks, make_leaves, t, NULL, 0, 1));
     for (int level = 1; level < t->levels; level++)
         for (size_t i = 0; i < t->level_count[level]; i++) {
             const size_t child = t->level_first[level - 1] + 2 * i;
-            extent *box = &t->boxes[t->level_first[level] + i];
-            *box = t->boxes[child];
-            if (2 * i + 1 < t->level_count[level - 1]) widen(box, &t->boxes[child + 1]);
+            const size_t own = t->level_first[level] + i;
+            t->boxes[own] = t->boxes[child];
+            t->any_fresh[own] = t->any_fresh[child];
+            if (2 * i + 1 == t->level_count[level - 1]) continue;
+            widen(&t->boxes[own], &t->boxes[child + 1]);
+            t->any_fresh[own] |= t->any_fresh[child + 1];
         }
     return SWARF_OK;
 }
@@ -213,9 +223,9 @@ static swarf_status look_at_leaf(const tree *t, size_t own, size_t leaf, found *
             out->pairs[out->count++] = (swarf_facet_pair){f, f};
         }
         for (size_t k = own == leaf ? i + 1 : leaf * LEAF; k < (leaf + 1) * LEAF && k < count; k++) {
-            if (apart(&t->own[i], &t->own[k])) continue;
-            int32_t q[3][3];
             const uint32_t g = t->keys[k].facet;
+            if (apart(&t->own[i], &t->own[k]) || (t->fresh && !t->fresh[f] && !t->fresh[g])) continue;
+            int32_t q[3][3];
             corners_of(t, g, q);
             if (!swarf_triangles_meet(p, t->facets->facet[f].v, q, t->facets->facet[g].v)) continue;
             SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
@@ -230,9 +240,9 @@ typedef struct node {
     size_t index;
 } node;
 
-static const extent *box_of(const tree *t, node n)
+static size_t place_of(const tree *t, node n)
 {
-    return &t->boxes[t->level_first[n.level] + n.index];
+    return t->level_first[n.level] + n.index;
 }
 
 /* The leaves under node `index` of level PART, against all that do not come before them. */
@@ -249,7 +259,10 @@ static swarf_status look_for(void *context, size_t index)
     while (depth) {
         depth--;
         const node a = stack[depth].a, b = stack[depth].b;
-        if ((b.index + 1) << b.level <= a.index << a.level || apart(box_of(t, a), box_of(t, b))) continue;
+        const size_t at_a = place_of(t, a), at_b = place_of(t, b);
+        if ((b.index + 1) << b.level <= a.index << a.level || !(t->any_fresh[at_a] | t->any_fresh[at_b]) ||
+            apart(&t->boxes[at_a], &t->boxes[at_b]))
+            continue;
         if (a.level == 0 && b.level == 0) {
             SWARF_TRY(look_at_leaf(t, a.index, b.index, out));
             continue;
@@ -291,19 +304,20 @@ static swarf_status look_everywhere(tree *t, const swarf_progress *progress, dou
     return SWARF_OK;
 }
 
-swarf_status swarf_facets_intersect(const swarf_facets *facets, const swarf_progress *progress, double from, double to,
-                                    swarf_facet_pair **pairs, size_t *count)
+swarf_status swarf_facets_intersect(const swarf_facets *facets, const uint8_t *fresh, const swarf_progress *progress,
+                                    double from, double to, swarf_facet_pair **pairs, size_t *count)
 {
     if (facets->facet_count == 0) {
         *pairs = NULL;
         *count = 0;
         return SWARF_OK;
     }
-    tree t = {.facets = facets, .step = step_of(facets)};
+    tree t = {.facets = facets, .fresh = fresh, .step = step_of(facets)};
     swarf_status status = build(&t);
     if (status == SWARF_OK) status = look_everywhere(&t, progress, from, to, pairs, count);
     free(t.keys);
     free(t.boxes);
+    free(t.any_fresh);
     free(t.own);
     free(t.parts);
     return status;
