@@ -6,13 +6,13 @@
 #include "base/status.h"
 #include "stock/block.h"
 #include "stock/leaf.h"
+#include "sweep/kernel.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum {
     ROW = 8,
-    ROWS = SWARF_LEAF_SIZE / ROW,
     ROW_BYTES = ROW * sizeof(float),
     COLUMN_SLOTS = 4, /* along x and y */
     NODE_COLUMNS = 16 / COLUMN_SLOTS,
@@ -90,24 +90,15 @@ static int is_same_row(const float *a, const float *b)
     return ((own[0] ^ other[0]) | (own[1] ^ other[1]) | (own[2] ^ other[2]) | (own[3] ^ other[3])) == 0;
 }
 
-/* Rows that are not the same bits in both leaves. */
-static uint64_t find_changed(const float *before, const float *after)
-{
-    uint64_t changed = 0;
-    for (int row = 0; row < ROWS; row++)
-        changed |= (uint64_t)!is_same_row(before + (ptrdiff_t)row * ROW, after + (ptrdiff_t)row * ROW) << row;
-    return changed;
-}
-
 /* Of these rows those that repeat the one before: along level and upright faces most do. */
 static uint64_t find_same(const float *values, uint64_t rows)
 {
-    uint64_t same = 0;
-    const float *last = NULL;
-    for (; rows; rows &= rows - 1) {
-        const float *row = values + (ptrdiff_t)__builtin_ctzll(rows) * ROW;
-        if (last && is_same_row(row, last)) same |= rows & (~rows + 1);
-        last = row;
+    if (!rows) return 0;
+    uint64_t same = swarf_kernel_current()->rows_repeated(values) & rows & rows << 1;
+    for (uint64_t left = rows & ~(rows << 1) & (rows - 1); left; left &= left - 1) { /* first ones after a gap */
+        const int row = __builtin_ctzll(left);
+        const int last = 63 - __builtin_clzll(rows & (((uint64_t)1 << row) - 1));
+        if (is_same_row(values + (ptrdiff_t)row * ROW, values + (ptrdiff_t)last * ROW)) same |= (uint64_t)1 << row;
     }
     return same;
 }
@@ -131,7 +122,7 @@ swarf_status swarf_undo_keep(swarf_undo *undo, int32_t column, size_t node, unsi
 {
     const swarf_undo_layer *layer = &undo->layers[undo->count - 1];
     struct entry entry = {.node = (uint32_t)node, .slot = (uint16_t)slot, .kind = KIND_TILE};
-    const uint64_t rows = !before ? 0 : after ? find_changed(before, after) : UINT64_MAX;
+    const uint64_t rows = !before ? 0 : after ? swarf_kernel_current()->rows_changed(before, after) : UINT64_MAX;
     if (before && !rows) return SWARF_OK;
     if (before) entry.kind = after ? KIND_ROWS : KIND_LEAF;
     return append_entry(&layer->columns[undo->index[column]], entry, rows, before);
@@ -198,14 +189,13 @@ static swarf_status put_entry(swarf_tree *tree, const struct entry *entry, const
     const float background = swarf_tree_get_layout(tree)->background;
     _Alignas(64) float whole[SWARF_LEAF_SIZE];
     uint64_t mask[8];
-    float least;
     if (entry->kind == KIND_TILE) {
         swarf_tree_tile(tree, entry->node, entry->slot, 1);
         return SWARF_OK;
     }
     float *values = entry->kind == KIND_LEAF ? whole : swarf_tree_leaf(tree, entry->node, entry->slot);
     put_rows(entry, stored, values);
-    swarf_leaf_mask(values, background, mask, &least);
+    swarf_kernel_current()->band(values, background, mask);
     if (entry->kind == KIND_LEAF) return swarf_tree_leaf_add(tree, entry->node, entry->slot, values, mask);
     swarf_tree_leaf_mask(tree, entry->node, entry->slot, mask);
     return SWARF_OK;
@@ -436,8 +426,7 @@ static swarf_status match_slot(const struct match *match, int32_t column, size_t
         return SWARF_OK;
     }
     uint64_t mask[8];
-    float least;
-    swarf_leaf_mask(wanted.values, background, mask, &least);
+    swarf_kernel_current()->band(wanted.values, background, mask);
     if (!values) return swarf_tree_leaf_add(tree, node, slot, wanted.values, mask);
     memcpy(values, wanted.values, SWARF_LEAF_SIZE * sizeof *values);
     swarf_tree_leaf_mask(tree, node, slot, mask);

@@ -45,6 +45,12 @@ typedef struct swarf_kernel {
                   float *least);
     /** Material in a leaf, in voxels: the sum of clamp(1/2 - value * scale, 0, 1), scale being 1 / voxel. */
     double (*occupancy)(const float values[512], float scale);
+    /** The mask of those values of a leaf that are in the band. */
+    void (*band)(const float values[512], float background, uint64_t mask[8]);
+    /** Rows (x * 8 + y, of eight values along z) that are not the same bits in both leaves. */
+    uint64_t (*rows_changed)(const float before[512], const float after[512]);
+    /** Rows, but for the first, that are the same bits as the one before. */
+    uint64_t (*rows_repeated)(const float values[512]);
 } swarf_kernel;
 
 /** The kernels of swarf_isa_current(). */

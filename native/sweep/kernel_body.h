@@ -3,6 +3,7 @@
  *
  * Lanes are 4 x 4 columns of voxels (lane = 4 * x + y); what needs a square root depends on (x, y) only and is done
  * once for the eight voxels above each other, except where a track is tilted and the body general. */
+#include "sweep/counts.h"
 #include "sweep/kernel_cull.h"
 #include "sweep/kernel_general.h"
 #include "sweep/kernel_line.h"
@@ -128,19 +129,19 @@ static int cut(const swarf_body *body, const swarf_column *c, const int32_t *lis
     for (int g = 0; g < 4; g++)
         blocks[g] = (swarf_block){leaf->x + (float)(g >> 1) * 4 + 1.5f, leaf->y + (float)(g & 1) * 4 + 1.5f,
                                   leaf->z + 3.5f, 1.5f, 3.5f};
-    size_t counts[4] = {count, count, count, count};
+    size_t left[4] = {count, count, count, count};
     const int each = count > FEW;
-    const unsigned removed = each ? cull(body, c, list, count, blocks, 4, &c->list[LIST_GROUPS], counts) : 0;
+    const unsigned removed = each ? cull(body, c, list, count, blocks, 4, &c->list[LIST_GROUPS], left) : 0;
     for (int g = 0; g < 4; g++) {
         const int gx = (g >> 1) * 4, gy = (g & 1) * 4;
         if (removed >> g & 1) {
             remove_group(&state, gx, gy);
-        } else if (counts[g] == 0) {
+        } else if (left[g] == 0) {
             keep_group(&state, gx, gy);
             continue;
         } else {
             lanes found[8];
-            distance_group(body, c, each ? c->list[LIST_GROUPS + g] : list, counts[g],
+            distance_group(body, c, each ? c->list[LIST_GROUPS + g] : list, left[g],
                            load(lane_x) + (leaf->x + (float)gx), load(lane_y) + (leaf->y + (float)gy), leaf->z, 8,
                            found);
             merge_group(&state, gx, gy, found, leaf->voxel);
@@ -197,4 +198,43 @@ static double occupancy(const float values[512], float scale)
     return total;
 }
 
-const swarf_kernel KERNEL_NAME = {cull, cut, distance, block, occupancy};
+static void band(const float values[512], float background, uint64_t active[8])
+{
+    unsigned char rows[64];
+    for (int place = 0; place < 64; place += 2) {
+        const uint16_t within = (uint16_t)bits(less(magnitude(load(values + place * 8)), all(background)));
+        memcpy(rows + place, &within, sizeof within);
+    }
+    memcpy(active, rows, sizeof rows);
+}
+
+/* Bits 0 and 1: whether a pair of rows differs from another. */
+INLINE uint64_t pair_differs(lanes a, lanes b)
+{
+    const unsigned off = bits(meets((counts)a ^ (counts)b, all_counts(-1)));
+    return (uint64_t)((off & 0xff) != 0) | (uint64_t)(off > 0xff) << 1;
+}
+
+static uint64_t rows_changed(const float before[512], const float after[512])
+{
+    uint64_t changed = 0;
+    for (int place = 0; place < 64; place += 2)
+        changed |= pair_differs(load(before + place * 8), load(after + place * 8)) << place;
+    return changed;
+}
+
+static uint64_t rows_repeated(const float values[512])
+{
+    uint64_t other = 1;
+    lanes last = load(values);
+    for (int place = 0; place < 64; place += 2) {
+        const lanes pair = load(values + place * 8);
+        const lanes before =
+            __builtin_shufflevector(last, pair, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23);
+        other |= pair_differs(pair, before) << place;
+        last = pair;
+    }
+    return ~other;
+}
+
+const swarf_kernel KERNEL_NAME = {cull, cut, distance, block, occupancy, band, rows_changed, rows_repeated};

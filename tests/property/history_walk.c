@@ -137,13 +137,18 @@ int main(int count, char **argument)
 {
     test_random random = test_random_begin(815);
     CHECK_OK(swarf_progress_interval_set(0));
+    const swarf_isa best = swarf_isa_current();
     int cancelled = 0;
     const int jobs = count > 1 ? atoi(argument[1]) : 2;
     for (int i = 0; i < jobs; i++) {
         walk_job job = walk_job_make(&random, i ? 150 + (size_t)test_random_below(&random, 400) : 4200);
         printf("job %d: %zu moves, voxel %g\n", i, job.moves, job.voxel);
         const size_t limits[] = {1, 30000, 500000, SIZE_MAX};
-        for (int k = i % 2; k < 4; k += 2) check_walk(&job, &random, limits[k], &cancelled);
+        for (int k = i % 2; k < 4; k += 2) {
+            if (k == 1) (void)swarf_isa_set(SWARF_ISA_AVX2); /* where the processor has it */
+            check_walk(&job, &random, limits[k], &cancelled);
+            CHECK_OK(swarf_isa_set(best));
+        }
         check_simulation(&job, &random);
         walk_job_free(&job);
     }

@@ -238,7 +238,11 @@ int main(void)
     CHECK_OK(swarf_cutter_create_shape(SWARF_SHAPE_FLAT, &dimensions, &cutter));
     const swarf_tool tool = {.number = 1, .cutter = cutter};
     CHECK_OK(swarf_progress_interval_set(0));
+    const swarf_isa best = swarf_isa_current();
     check_slots(&tool);
+    CHECK_OK(swarf_isa_set(SWARF_ISA_SCALAR)); /* records are made and put back by kernels too */
+    check_slots(&tool);
+    CHECK_OK(swarf_isa_set(best));
     check_stamps(&tool);
     check_refusals(&tool);
     check_cancel(&tool);
