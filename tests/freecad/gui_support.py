@@ -26,7 +26,8 @@ for group in ("Path", "CAM"):
 # An error would make the report view pop up, and every widget another size.
 FreeCAD.ParamGet("User parameter:BaseApp/Preferences/OutputWindow").SetBool("checkShowReportViewOnError", False)
 
-WAIT_SECONDS = 120
+# More than anything takes on the busiest machine.
+WAIT_SECONDS = 240
 
 # What Qt's slots, timers and threads raised: nobody else would notice.
 _raised = []
