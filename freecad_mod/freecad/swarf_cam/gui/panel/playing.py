@@ -9,6 +9,9 @@ from ..qt import QtCore
 # Milliseconds between two looks at the clock while playing.
 TICK_MS = 30
 
+# Seconds between two looks that count: when FreeCAD stood still for longer, playing goes on from there, without a jump.
+STALL_SECONDS = 0.25
+
 
 class Player:
     """transport: the core Transport of the job that is open, None for none. selected: the line whose faces stand out in
@@ -43,7 +46,7 @@ class Player:
             self._panel.wish()
 
     def _tick(self):
-        elapsed = self._clock.restart() / 1000.0
+        elapsed = min(self._clock.restart() / 1000.0, STALL_SECONDS)
         if self.transport is None:
             self._timer.stop()
             return
