@@ -261,10 +261,9 @@ void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3
         if (is_beyond(seen, way, beaten)) continue;
         const swarf_trace *trace = &near->looked_at[seen->trace];
         swarf_touch touch;
-        swarf_trace_touch(trace, point, &touch);
-        if (touch.value >= least) continue;
+        swarf_trace_look(trace, point, beaten, &touch);
+        if (touch.value >= beaten) continue;
         least = touch.value;
-        if (-least <= first) continue;
         found = (swarf_surface_point){.value = -least,
                                       .normal = {-touch.gradient[0], -touch.gradient[1], -touch.gradient[2]},
                                       .t = touch.t,

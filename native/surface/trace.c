@@ -270,17 +270,19 @@ static void touch_arc(const swarf_trace *trace, const double p[3], swarf_touch *
 
 /* ---- tilted lines of cylinders and balls ------------------------------------------------------------------------- */
 
-/* A cylinder from `bottom` to `top` above the tip; its lower face has the piece number `piece`. */
+/* A cylinder from `bottom` to `top` above the tip; its lower face has the piece number `piece`. With a
+ * `most` without bounds, and not at all where it is as far as that. */
 static void touch_cylinder(const swarf_trace *trace, const double p[3], double R, double bottom, double top,
-                           int32_t piece, swarf_touch *best)
+                           int32_t piece, const double *most, swarf_touch *best)
 {
     const double m = trace->slope, im = trace->cosine;
     const double ex = p[0] - trace->point[0], ey = p[1] - trace->point[1], z = p[2] - trace->point[2];
     const double s = ex * trace->ux + ey * trace->uy, w = ey * trace->ux - ex * trace->uy;
     const double along = clamp(s, 0, trace->run), beyond = s - along, rho = sqrt(beyond * beyond + w * w);
+    const double low = bottom - z, high = z - (top + trace->rise);
+    if (most && (rho - R >= *most || low >= *most || high >= *most)) return;
     const double chord2 = most_of(0, R * R - w * w), chord = sqrt(chord2);
     const double norm = sqrt(chord2 + m * m * R * R), scale = chord / norm;
-    const double low = bottom - z, high = z - (top + trace->rise);
     const double under = scale * ((s - chord) * m + bottom - z), over = scale * (z - top - (s + chord) * m);
     double value = rho - R, gs = rho > 0 ? beyond / rho : 1, gw = rho > 0 ? w / rho : 0, gz = 0, at = along;
     int32_t touched = piece + 1;
@@ -313,6 +315,12 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
         at = clamp(s + chord, 0, trace->run);
         touched = piece + 2;
     }
+    const double gradient[3] = {gs * trace->ux - gw * trace->uy, gs * trace->uy + gw * trace->ux, gz};
+    const double t = trace->t0 + (trace->t1 - trace->t0) * at / trace->run;
+    if (most) {
+        offer(best, value, value, gradient, t, touched);
+        return;
+    }
     const double plane_under = ((s - R) * m + bottom - z) * im, plane_over = (z - top - (s + R) * m) * im;
     double raw = rho - R, ts = rho > 0 ? beyond / rho : 1, tw = rho > 0 ? w / rho : 0, tz = 0;
     const double flat = most_of(low, high), plane = most_of(plane_under, plane_over);
@@ -323,14 +331,13 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
         tw = 0;
         tz = (up ? 1 : -1) * (flat >= plane ? 1 : im);
     }
-    const double gradient[3] = {gs * trace->ux - gw * trace->uy, gs * trace->uy + gw * trace->ux, gz};
-    offer(best, value, raw, gradient, trace->t0 + (trace->t1 - trace->t0) * at / trace->run, touched);
+    offer(best, value, raw, gradient, t, touched);
     best->exact = 0;
     const double tangent[3] = {ts * trace->ux - tw * trace->uy, ts * trace->uy + tw * trace->ux, tz};
     put_bound(best, raw, tangent);
 }
 
-static void touch_ball(const swarf_trace *trace, const double p[3], swarf_touch *best)
+static void touch_ball(const swarf_trace *trace, const double p[3], const double *most, swarf_touch *best)
 {
     const swarf_exact_piece *ball = trace->body->exact;
     const double R = ball->radius, length = trace->length, *d = trace->along;
@@ -338,8 +345,11 @@ static void touch_ball(const swarf_trace *trace, const double p[3], swarf_touch 
     const double q = clamp(e[0] * d[0] + e[1] * d[1] + e[2] * d[2], 0, length);
     for (int k = 0; k < 3; k++) e[k] -= q * d[k];
     const double away = sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    /* what is above the ball is farther than it from a point so far below */
+    if (!most || !(ball->centre_z - (p[2] - trace->point[2]) > away - R))
+        touch_cylinder(trace, p, R, ball->centre_z, top_of(trace->body), 0, most, best);
+    if (most && away - R >= *most) return;
     const double gradient[3] = {away > 0 ? e[0] / away : 0, away > 0 ? e[1] / away : 0, away > 0 ? e[2] / away : -1};
-    touch_cylinder(trace, p, R, ball->centre_z, top_of(trace->body), 0, best);
     offer(best, away - R, away - R, gradient, trace->t0 + (trace->t1 - trace->t0) * q / length, 0);
     put_bound(best, away - R, gradient);
 }
@@ -475,22 +485,34 @@ static void touch_any(const swarf_trace *trace, const double p[3], swarf_touch *
     }
 }
 
-void swarf_trace_touch(const swarf_trace *trace, const double point[3], swarf_touch *out)
+static void touch_trace(const swarf_trace *trace, const double point[3], const double *most, swarf_touch *best)
 {
-    swarf_touch best = {.value = INFINITY, .raw = INFINITY, .exact = 1};
     const swarf_body *body = trace->body;
+    best->value = best->raw = INFINITY;
+    best->exact = 1;
+    best->bounds = 0;
     switch (trace->kind) {
-    case TRACE_LEVEL: touch_level_line(trace, point, &best); break;
-    case TRACE_ARC: touch_arc(trace, point, &best); break;
-    case TRACE_CURVE: touch_any(trace, point, &best); break;
+    case TRACE_LEVEL: touch_level_line(trace, point, best); break;
+    case TRACE_ARC: touch_arc(trace, point, best); break;
+    case TRACE_CURVE: touch_any(trace, point, best); break;
     case TRACE_TILTED:
         if (body->kind == SWARF_BODY_CYLINDER)
-            touch_cylinder(trace, point, body->exact_radius, body->exact_lo, top_of(body), 0, &best);
+            touch_cylinder(trace, point, body->exact_radius, body->exact_lo, top_of(body), 0, most, best);
         else if (body->kind == SWARF_BODY_BALL)
-            touch_ball(trace, point, &best);
+            touch_ball(trace, point, most, best);
         else
-            touch_any(trace, point, &best);
+            touch_any(trace, point, best);
         break;
     }
-    *out = best;
+}
+
+void swarf_trace_touch(const swarf_trace *trace, const double point[3], swarf_touch *out)
+{
+    *out = (swarf_touch){0};
+    touch_trace(trace, point, NULL, out);
+}
+
+void swarf_trace_look(const swarf_trace *trace, const double point[3], double most, swarf_touch *out)
+{
+    touch_trace(trace, point, &most, out);
 }

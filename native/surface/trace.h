@@ -53,5 +53,8 @@ void swarf_trace_make(const swarf_body *body, const swarf_path *path, int64_t mo
 void swarf_trace_box(const swarf_trace *trace, swarf_box *out);
 
 void swarf_trace_touch(const swarf_trace *trace, const double point[3], swarf_touch *out);
+/** The same value, gradient, t and piece where that value is below `most`, else any value that is not; the rest of *out
+ *  means nothing. Costs less. */
+void swarf_trace_look(const swarf_trace *trace, const double point[3], double most, swarf_touch *out);
 
 #endif
