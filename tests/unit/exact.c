@@ -35,7 +35,7 @@ static double value_at(const double p[3], double normal[3], int *cut)
     return slot;
 }
 
-static swarf_scene *make_scene(swarf_stock **stock)
+static swarf_scene *make_scene(swarf_stock **stock, swarf_surface **out)
 {
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = voxel;
@@ -58,7 +58,7 @@ static swarf_scene *make_scene(swarf_stock **stock)
     CHECK_OK(swarf_stock_cut(*stock, cutter, &path, 1, NULL));
     CHECK_OK(swarf_scene_create(*stock, &scene));
     CHECK_OK(swarf_scene_set_surface(scene, surface, 1));
-    swarf_surface_release(surface);
+    *out = surface;
     swarf_program_release(program);
     swarf_cutter_release(cutter);
     return scene;
@@ -91,11 +91,43 @@ static void aim_at_edge(test_random *random, double out[3])
     for (int axis = 0; axis < 3; axis++) out[axis] += test_random_in(random, -voxel, voxel);
 }
 
+/** What a picture saw is not taken over by the next one when the surface, or how much of it stands, is another. */
+static void check_recall(swarf_stock *stock, swarf_scene *scene, swarf_surface *surface)
+{
+    enum { WIDTH = 120, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
+    static uint8_t last[4 * PIXELS], rgba[4 * PIXELS], fresh[4 * PIXELS];
+    static int32_t move[PIXELS], fresh_move[PIXELS];
+    const swarf_picture_buffers out = {.size = sizeof out, .rgba = rgba, .move = move};
+    const swarf_picture_buffers fresh_out = {.size = sizeof out, .rgba = fresh, .move = fresh_move};
+    swarf_surface *const surfaces[] = {surface, surface, NULL, surface};
+    const size_t moves[] = {1, 0, 0, 1};
+    swarf_picture_options options = swarf_picture_options_default();
+    swarf_camera camera;
+    options.width = WIDTH;
+    options.height = HEIGHT;
+    options.samples = 2;
+    options.occlusion = 0;
+    CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 1, &block, (double)WIDTH / HEIGHT, &camera));
+    for (int step = 0; step < 4; step++) {
+        swarf_scene *once = NULL;
+        CHECK_OK(swarf_scene_set_surface(scene, surfaces[step], moves[step]));
+        CHECK_OK(swarf_scene_render(scene, &camera, &options, NULL, &out));
+        CHECK_OK(swarf_scene_create(stock, &once));
+        CHECK_OK(swarf_scene_set_surface(once, surfaces[step], moves[step]));
+        CHECK_OK(swarf_scene_render(once, &camera, &options, NULL, &fresh_out));
+        swarf_scene_destroy(once);
+        CHECK(memcmp(rgba, fresh, sizeof rgba) == 0 && memcmp(move, fresh_move, sizeof move) == 0);
+        CHECK(step == 0 || memcmp(rgba, last, sizeof rgba) != 0);
+        memcpy(last, rgba, sizeof last);
+    }
+}
+
 int main(void)
 {
     test_random random = test_random_begin(53);
     swarf_stock *stock = NULL;
-    swarf_scene *scene = make_scene(&stock);
+    swarf_surface *surface = NULL;
+    swarf_scene *scene = make_scene(&stock, &surface);
     swarf_picture_options options = swarf_picture_options_default();
     int seen = 0, off = 0, turned = 0, wrong = 0;
     for (int trial = 0; scene && trial < 20000; trial++) {
@@ -132,6 +164,8 @@ int main(void)
     CHECK(seen > 15000);
     CHECK(off <= seen / 1000);
     CHECK(turned == 0 && wrong == 0);
+    if (scene) check_recall(stock, scene, surface);
+    swarf_surface_release(surface);
     swarf_scene_destroy(scene);
     swarf_stock_destroy(stock);
     return test_end();
