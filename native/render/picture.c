@@ -138,6 +138,7 @@ static swarf_status look_tile(void *context, size_t index)
 static int place_of_middle(const void *context, size_t index, double place[2])
 {
     const swarf_canvas *c = context;
+    if (!place) return 1;
     place[0] = swarf_canvas_x(c, (int32_t)(index % (size_t)c->width), 0.5);
     place[1] = swarf_canvas_y(c, (int32_t)(index / (size_t)c->width), 0.5);
     return 1;
@@ -147,7 +148,7 @@ static int place_of_middle(const void *context, size_t index, double place[2])
 static int place_of_pick(const void *context, size_t index, double place[2])
 {
     (void)index;
-    memcpy(place, context, 2 * sizeof *place);
+    if (place) memcpy(place, context, 2 * sizeof *place);
     return 1;
 }
 

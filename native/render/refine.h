@@ -5,7 +5,8 @@
 
 #include "render/look.h"
 
-/** Place (-1 .. 1) in the picture of the ray of sight `index`; 0: it is on the exact surface already. */
+/** Place (-1 .. 1) in the picture of the ray of sight `index`, if `place` is not NULL; returns 0 when that is on the
+ *  exact surface already. Many threads at once. */
 typedef int (*swarf_place_fn)(const void *context, size_t index, double place[2]);
 
 /** Move those of `count` sights that see the stock along their rays onto the scene's exact surface, where it has one;

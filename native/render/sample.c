@@ -180,10 +180,12 @@ static int place_of_sample(const void *context, size_t index, double place[2])
     const strip *s = context;
     const swarf_canvas *c = s->canvas;
     const int32_t n = c->options->samples, sub = (int32_t)(index % (size_t)(n * n)), row = sub / n;
+    const int is_new = 2 * sub + 1 != n * n;
+    if (!place) return is_new;
     const size_t square = s->rough[index / (size_t)(n * n)];
     place[0] = swarf_canvas_x(c, (int32_t)(square % (size_t)c->width), (sub % n + 0.5) / n);
     place[1] = swarf_canvas_y(c, (int32_t)(square / (size_t)c->width), (row + 0.5) / n);
-    return 2 * sub + 1 != n * n;
+    return is_new;
 }
 
 /** Send the rays of some squares, one after the other in full packets. */
