@@ -239,7 +239,10 @@ static swarf_status find_pairs(const stage *s, int first, found *out)
     free(fresh);
     if (status == SWARF_OK && all > 0) status = swarf_facets_known_take(s->known, s->facets, out->pairs, all);
     s->facets->facet_count = own;
-    SWARF_TRY(status);
+    if (status != SWARF_OK) {
+        free(out->pairs);
+        return status;
+    }
     for (size_t i = 0; i < all; i++) {
         const swarf_facet_pair pair = out->pairs[i];
         const int a = pair.a < own && !s->facets->facet[pair.a].beyond;

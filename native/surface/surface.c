@@ -50,7 +50,7 @@ void swarf_surface_first(const swarf_surface *surface, const double point[3], sw
         double most = -INFINITY, square = 0;
         for (int k = 0; k < 3; k++) {
             const double below = surface->lo[k] - point[k], above = point[k] - surface->hi[k];
-            const double away = fmax(below, above);
+            const double away = below > above ? below : above; /* fmax() is a call */
             if (away > most) {
                 most = away;
                 out->piece = 2 * k + (above > below);

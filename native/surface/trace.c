@@ -270,8 +270,8 @@ static void touch_arc(const swarf_trace *trace, const double p[3], swarf_touch *
 
 /* ---- tilted lines of cylinders and balls ------------------------------------------------------------------------- */
 
-/* A cylinder from `bottom` to `top` above the tip; its lower face has the piece number `piece`. With a
- * `most` without bounds, and not at all where it is as far as that. */
+/* A cylinder from `bottom` to `top` above the tip; its lower face has the piece number `piece`. With a `most` only its
+ * value, and not even that where it is as far. */
 static void touch_cylinder(const swarf_trace *trace, const double p[3], double R, double bottom, double top,
                            int32_t piece, const double *most, swarf_touch *best)
 {
