@@ -286,6 +286,7 @@ static swarf_status cut_column_with(const struct cut_work *work, swarf_column *c
         else if (left)
             SWARF_TRY(cut_cube(work, touch, column, kept, left, at, COLUMN_LEAVES));
     }
+    if (work->undo) swarf_undo_finish(work->undo, number);
     return SWARF_OK;
 }
 

@@ -128,28 +128,36 @@ swarf_status swarf_undo_keep(swarf_undo *undo, int32_t column, size_t node, unsi
     return append_entry(&layer->columns[undo->index[column]], entry, rows, before);
 }
 
-/* What is in the columns of a layer, whose lists then fit. */
+/* What is in the columns of a layer. */
 static void count_layer(swarf_undo_layer *layer)
 {
     layer->bytes = sizeof *layer + layer->count * sizeof *layer->columns;
     layer->slots = 0;
     for (size_t i = 0; i < layer->count; i++) {
-        const swarf_undo_column *column = &layer->columns[i];
-        struct entry entry;
-        for (size_t at = 0; at < column->size; at += entry_bytes(&entry)) {
-            memcpy(&entry, column->bytes + at, sizeof entry);
-            layer->slots++;
-        }
-        layer->bytes += column->room;
+        layer->slots += layer->columns[i].slots;
+        layer->bytes += layer->columns[i].room;
     }
 }
 
-static void fit_column(swarf_undo_column *column)
+/* Count what is in a column's list, and let it fit. */
+static void finish_column(swarf_undo_column *column)
 {
+    if (!column->size) return;
+    struct entry entry;
+    column->slots = 0;
+    for (size_t at = 0; at < column->size; at += entry_bytes(&entry)) {
+        memcpy(&entry, column->bytes + at, sizeof entry);
+        column->slots++;
+    }
     unsigned char *fitting = realloc(column->bytes, column->size);
     if (!fitting) return;
     column->bytes = fitting;
     column->room = column->size;
+}
+
+void swarf_undo_finish(swarf_undo *undo, int32_t column)
+{
+    finish_column(&undo->layers[undo->count - 1].columns[undo->index[column]]);
 }
 
 void swarf_undo_close(swarf_undo *undo)
@@ -157,9 +165,7 @@ void swarf_undo_close(swarf_undo *undo)
     swarf_undo_layer *layer = &undo->layers[undo->count - 1];
     size_t used = 0;
     for (size_t i = 0; i < layer->count; i++) {
-        if (!layer->columns[i].size) continue;
-        fit_column(&layer->columns[i]);
-        layer->columns[used++] = layer->columns[i];
+        if (layer->columns[i].size) layer->columns[used++] = layer->columns[i];
     }
     layer->count = used;
     swarf_undo_column *fitting = realloc(layer->columns, (used + 1) * sizeof *fitting);
@@ -310,7 +316,7 @@ static swarf_status merge_lists(const struct merge *merge, const swarf_undo_colu
             status = append_bytes(out, newer->bytes + at, entry_bytes(&entry));
     }
     free(found);
-    if (status == SWARF_OK) fit_column(out);
+    if (status == SWARF_OK) finish_column(out);
     return status;
 }
 
@@ -445,6 +451,7 @@ static swarf_status match_column(void *context, size_t index)
         for (unsigned i = 0; i < SLOTS_AT_ONCE; i++)
             SWARF_TRY(match_slot(match, (int32_t)index, node + (size_t)z,
                                  low + ((i >> 6) << 8 | (i >> 4 & 3) << 4 | (i & 15))));
+    if (match->undo) swarf_undo_finish(match->undo, (int32_t)index);
     return SWARF_OK;
 }
 

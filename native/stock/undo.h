@@ -18,6 +18,7 @@ typedef struct swarf_undo_column {
     int32_t number; /* (x * columns along y + y) in columns of the layout */
     unsigned char *bytes;
     size_t size, room;
+    size_t slots; /* entries, once it is finished */
 } swarf_undo_column;
 
 typedef struct swarf_undo_layer {
@@ -44,6 +45,8 @@ swarf_status swarf_undo_open(swarf_undo *undo, const swarf_tree_layout *layout, 
  *  values it is going to have or already has (NULL: the leaf goes). One thread per column. */
 swarf_status swarf_undo_keep(swarf_undo *undo, int32_t column, size_t node, unsigned slot, const float *before,
                              const float *after);
+/** Nothing more is to be kept in a column of the open layer: its list need not grow any more. One thread per column. */
+void swarf_undo_finish(swarf_undo *undo, int32_t column);
 /** Close the layer, however much of it was cut. */
 void swarf_undo_close(swarf_undo *undo);
 
