@@ -51,11 +51,11 @@ typedef struct swarf_contour_report {
  *  hangs together; the surface, where it is given, decides where its vertices lie: on the true faces and edges within a
  *  hundredth of a voxel. The field alone tells faces to about as much, but edges to half a voxel; it is used where the
  *  surface does not have the stock's signs. Walls and gaps thinner than a voxel have no voxel centre in places, and are
- *  not there then; how much material that is the report tells. Wedges, roots of threads and tips of points narrower
- * than a voxel end up to a voxel early, and where crests follow each other closer than a voxel vertices lie on them, so
- * that valleys between are lost: volume is exact on faces and edges, to the second order of the voxel there. `report`
- * may be NULL. An empty stock gives an empty mesh. SWARF_ERROR_GEOMETRY: material reaches the border of the level set,
- * which a file of another program may do. The result does not depend on the number of threads. */
+ *  not there then; how much material that is the report tells, about. Wedges, roots of threads and tips of points
+ *  narrower than a voxel end up to a voxel early, and of crests closer to each other than a voxel the valleys may be
+ *  lost.
+ *  `report` may be NULL. An empty stock gives an empty mesh. SWARF_ERROR_GEOMETRY: material reaches the border of the
+ *  level set, which a file of another program may do. The result does not depend on the number of threads. */
 SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options *options,
                                           const swarf_progress *progress, swarf_mesh **out,
                                           swarf_contour_report *report);
