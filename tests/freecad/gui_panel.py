@@ -295,6 +295,7 @@ class Watching(PanelTest):
 
         assert [numbers.text(-0.0001, 3, True), numbers.text(1234.5, 1), numbers.short(-0.2, True)] == \
             ["+0,000", "1234,5", "-0,2"]
+        assert [numbers.text(1234567.891, 3), numbers.short(2.5e-7)] == ["1234567,891", "2,5e-07"], "in double precision"
         assert [numbers.count(1234567), numbers.size(4.2e9), numbers.size(1234)] == ["1.234.567", "4,2 GB", "0,00 MB"]
         assert german.accuracy.voxel.text() == "0,2000 mm"
         assert "60,00 cm³" in german.accuracy.outcome.text() and "." not in german.accuracy.estimate.text()

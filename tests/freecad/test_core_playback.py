@@ -149,7 +149,7 @@ def test_transport_obeys_the_clock(table):
     player.arrived(float(len(table)))
     assert not player.playing
     player.play()
-    assert player.playing and player.tick(0.0) == len(table) and player.at == len(table)
+    assert player.playing and player.tick(0.0) == 0 and player.at == len(table)
 
 
 def test_transport_waits_for_the_cutting(table):
@@ -183,6 +183,30 @@ def test_a_late_picture_of_the_end_does_not_stop_what_begins_again(table):
     player.play()
     player.tick(0.05)
     player.arrived(float(len(table)))
+    assert player.playing
+
+
+def test_playing_again_from_the_end_begins_at_the_beginning(table):
+    player = transport.Transport(Clock(table), {})
+    player.set_speed(transport.AS_FAST_AS_POSSIBLE)
+    player.seek(player.end)
+    player.arrived(player.end)
+    player.play()
+    assert player.tick(0.05) == 0 and player.tick(0.05) == 0
+    player.arrived(0.0)
+    assert player.tick(0.05) == player.end
+    player.arrived(player.end)
+    assert not player.playing
+
+
+def test_a_stop_where_playing_begins_does_not_end_it(table):
+    second = float(listings.Listing(table, operations()).operation_begin[1])
+    player = transport.Transport(Clock(table), {transport.STOP_OPERATION: [second]})
+    player.enabled = {transport.STOP_OPERATION}
+    player.seek(second)
+    player.arrived(second)
+    player.play()
+    player.arrived(second)  # the same picture, sharper
     assert player.playing
 
 
@@ -271,8 +295,12 @@ def test_a_late_picture_does_not_hide_a_stop(table):
     player.set_speed(transport.AS_FAST_AS_POSSIBLE)
     player.arrived(float(len(table)))
     player.play()
-    assert player.tick(0.05) == second
+    player.tick(0.05)
     player.arrived(float(len(table)))
+    assert player.tick(0.05) == 0 and player.playing, "where playing begins has not been shown yet"
+    player.arrived(0.0)
+    assert player.tick(0.05) == second
+    player.arrived(0.0)
     assert player.tick(0.05) == second and player.playing
     player.arrived(second)
     assert not player.playing
@@ -285,11 +313,13 @@ def test_a_late_picture_does_not_move_who_pauses(table):
         player.arrived(before)
         player.seek(begin)
         player.play()
+        assert player.tick(0.05) == begin, "nothing is wanted before a picture of the place that was sought"
         player.set_speed(player.speed)
         assert player.wanted == begin
         player.pause()
         assert player.wanted == begin and not player.playing
     player.play()
+    player.arrived(2.0)
     player.tick(0.05)
     player.arrived(5.0)
     player.pause()
@@ -392,10 +422,10 @@ def test_engine_breaks_off_refining_for_something_newer():
     engine, listener = running(session)
     engine.wish(view="first")
     assert session.refining.wait(20)
+    session.refining.clear()
     engine.wish(view="second")
     listener.wait(lambda: any(frame[0] == "second" for frame in listener.frames))
     assert session.broken_off == 1
-    session.refining.clear()
     assert session.refining.wait(20)
     answers = []
     engine.call(lambda session, progress: session.broken_off, lambda result, error: answers.append(result))

@@ -29,7 +29,8 @@ class Transport:
         self.wanted = 0.0
         self.at = 0.0
         self._time = 0.0
-        self._passed = 0.0  # since playing began; at may be of a picture from before
+        self._passed = 0.0  # since playing began
+        self._waiting = False  # for a picture of where playing begins: those that come are of before
 
     @property
     def end(self):
@@ -47,6 +48,7 @@ class Transport:
             self.seek(0.0)
         self.playing = self.end > 0
         self._passed = self.wanted
+        self._waiting = self.at != self.wanted
 
     def pause(self):
         """Stand where the cutting is."""
@@ -54,8 +56,8 @@ class Transport:
             self.seek(self._reached())
 
     def _reached(self):
-        """How far playing has come: at may be of a picture from before it began."""
-        return min(max(self.at, self._passed), self.wanted)
+        """How far playing has come."""
+        return self.wanted if self._waiting else min(max(self.at, self._passed), self.wanted)
 
     def seek(self, place):
         """Stop, and go to a place."""
@@ -70,7 +72,7 @@ class Transport:
 
     def tick(self, seconds):
         """Let so much of the viewer's time go by; the place wanted now."""
-        if not self.playing:
+        if not self.playing or self._waiting:
             return self.wanted
         stop = self.next_stop(self._passed)
         if self.speed == AS_FAST_AS_POSSIBLE:
@@ -86,9 +88,13 @@ class Transport:
     def arrived(self, place):
         """The cutting stands at this place now; at a stop or the end playing is over."""
         self.at = place
-        if self.playing and place < self.wanted:
+        if not self.playing:
+            return
+        if self._waiting:
+            self._waiting = place != self.wanted
+        elif place < self.wanted:
             self._passed = max(self._passed, place)
-        if self.playing and place == self.wanted and self._halts(place):
+        elif place == self.wanted and place > self._passed and self._halts(place):
             self.playing = False
             self._time = self.clock.time_of(place)
 

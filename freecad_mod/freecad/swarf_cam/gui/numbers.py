@@ -5,21 +5,20 @@ and what the native module says keep the decimal point."""
 from .qt import QtCore
 
 
-def _locale():
-    locale = QtCore.QLocale()
-    locale.setNumberOptions(QtCore.QLocale.OmitGroupSeparator)
-    return locale
+def _pointed(digits):
+    """Digits with the locale's point. PySide2's toString() would keep seven of them only."""
+    return digits.replace(".", str(QtCore.QLocale().decimalPoint()))
 
 
 def text(value, decimals, signed=False):
     """A number with so many decimals; signed: with its sign, also where that is a plus."""
     rounded = round(value, decimals) + 0.0  # no minus before zeros
-    return ("+" if signed and rounded >= 0 else "") + _locale().toString(float(rounded), "f", decimals)
+    return ("+" if signed and rounded >= 0 else "") + _pointed("%.*f" % (decimals, rounded))
 
 
 def short(value, signed=False):
     """A number with at most three digits that count."""
-    return ("+" if signed and value >= 0 else "") + _locale().toString(float(value), "g", 3)
+    return ("+" if signed and value >= 0 else "") + _pointed("%.3g" % value)
 
 
 def count(value):
@@ -33,7 +32,7 @@ def deviation(value):
 
 
 def size(count_of_bytes):
-    """Bytes, at least a hundredth of a megabyte of them."""
+    """Bytes, as megabytes or gigabytes."""
     if count_of_bytes >= 1e9:
         return text(count_of_bytes / 1e9, 1) + " GB"
     return text(count_of_bytes / 1e6, 0 if count_of_bytes >= 1e7 else 2) + " MB"

@@ -239,6 +239,10 @@
             <translation>Geprüft</translation>
         </message>
         <message>
+            <source>Checked, over an allowance of {0} mm</source>
+            <translation>Geprüft, über ein Aufmaß von {0} mm hinaus</translation>
+        </message>
+        <message>
             <source>Checked, without a model to compare with</source>
             <translation>Geprüft, ohne Modell zum Vergleichen</translation>
         </message>

@@ -9,7 +9,7 @@ from ...app import accepted
 from ...core import findings as model
 from ...core.errors import JobError
 from ...core.transport import STOP_FINDING
-from .. import colours, settings
+from .. import colours, numbers, settings
 from ..qt import QtCore
 from ..worker import Worker
 
@@ -104,7 +104,7 @@ class Checking:
         self._later.stop()
         self._again = False
         tolerance, stop, clearance = settings.tolerance(), settings.flag("StopAtError"), settings.clearance()
-        allowance = settings.allowance()
+        allowance = self._panel.deviation.allowance.value()
         self._run(translate("Swarf", "Checking ..."), lambda progress: checks.run(
             session.job, session.voxel_mm, tolerance, progress, stop, clearance, allowance))
 
@@ -114,7 +114,8 @@ class Checking:
         if self._again or self.running or self.outcome is None or self.outcome.verification is None:
             self.start()
             return
-        outcome, tolerance, allowance = self.outcome, settings.tolerance(), settings.allowance()
+        outcome, tolerance = self.outcome, settings.tolerance()
+        allowance = self._panel.deviation.allowance.value()
         self._run(translate("Swarf", "Judging ..."),
                   lambda progress: checks.judge(outcome, tolerance, progress, allowance))
 
@@ -169,6 +170,9 @@ class Checking:
             return translate("Swarf", "Stopped at the first error: the rest was not looked at")
         if session.job.design is None:
             return translate("Swarf", "Checked, without a model to compare with")
+        allowance = self._panel.deviation.allowance.value()
+        if allowance > 0:
+            return translate("Swarf", "Checked, over an allowance of {0} mm").format(numbers.text(allowance, 3))
         return translate("Swarf", "Checked") if self.found else translate("Swarf", "Checked: nothing was found")
 
     # What is accepted

@@ -203,6 +203,7 @@ class LivePanel(QtWidgets.QDockWidget):
         self.accuracy.measured(session, seconds)
         self.tools.open(session.job.design is not None)
         self.deviation.show_allowance()
+        self.deviation.allowance.setEnabled(session.job.design is not None)
         self.section.open(session.box)
         self.view.open(session.box)
         self.checking.open(session)
@@ -271,11 +272,12 @@ class LivePanel(QtWidgets.QDockWidget):
         """session.View of what is shown, or of another size (width, height) of the picture."""
         width, height = size or self.view.pixels()
         return sessions.View(self.view.camera.copy(), width, height, self._look(), settings.flag("ShowCutter"),
-                             settings.flag("ShowPath"), self.tools.tolerance_mm, settings.allowance(), self.tools.shown)
+                             settings.flag("ShowPath"), self.tools.tolerance_mm, self.deviation.allowance.value(),
+                             self.tools.shown)
 
     def wish(self):
         """Have the picture drawn as it is to be shown now."""
-        self.view.set_legend(self.tools.tolerance_mm, settings.allowance())
+        self.view.set_legend(self.tools.tolerance_mm, self.deviation.allowance.value())
         if self.session is not None and self.view.camera is not None:
             self.opening.wish(self.transport.wanted, self.current_view())
 

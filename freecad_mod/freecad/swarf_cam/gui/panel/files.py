@@ -39,7 +39,7 @@ class Files:
     def save_picture(self, path):
         """The picture as good as it gets to a PNG file."""
         panel = self._panel
-        if panel.session is None:
+        if panel.session is None or panel.banner.working:  # its button ends one thing
             return
         view, place = panel.current_view(), panel.transport.at
         call = panel.opening.call(lambda session, progress: session.write_png(path, view, place, progress),
@@ -55,7 +55,7 @@ class Files:
     def save_animation(self, folder, count=export.FRAMES_PER_SECOND * export.LENGTH_SECONDS, size=export.SIZE):
         """The whole program as frames, and a video where there is an encoder."""
         panel = self._panel
-        if panel.session is None:
+        if panel.session is None or panel.banner.working:
             return
         panel.player.seek(panel.transport.at)
         view, report = panel.current_view(size), export.Report(panel)

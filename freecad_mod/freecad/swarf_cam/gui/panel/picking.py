@@ -35,6 +35,8 @@ class Picking:
         if error is not None:
             panel.fail(error)
             return
+        if panel.transport.playing:  # begun since: what was clicked is being cut again
+            return
         self.found = found
         panel.view.set_mark(found.point if found else None)
         panel.player.select(found.line if found and found.move >= 0 else None)
