@@ -133,22 +133,23 @@ def simulate(
     if colour is not None and result.mesh is not None:
         tints = timed("mesh", lambda report: colours.make(
             colour, result.mesh, exact, job, tolerance, progress=report, allowance=allowance))
-    for path in sorted(outputs, key=lambda path: output_suffix(path) in solids.SUFFIXES):  # these last: they may not do
+    for path in outputs:
         if output_suffix(path) in MESH_SUFFIXES and streamed:
             result.contour = timed("mesh", lambda report: Mesh.stream(
                 stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=exact, progress=report))
         elif output_suffix(path) in MESH_SUFFIXES:
             timed("write", lambda report: result.mesh.write(path, colors=tints, progress=report))
-        elif output_suffix(path) in solids.SUFFIXES:
-            result.solids.append(timed("write", lambda report: solids.write(
-                cut, exact, path, error=MESH_ERROR_VOXELS * cut.voxel, only_largest=drop_loose, progress=report)))
-        else:
+        elif output_suffix(path) in STOCK_SUFFIXES:
             timed("write", lambda report: stock.write(path, progress=report))
     if picture is not None:
         width, height = picture_size
         camera, scene = Camera.view(view, stock.bounding_box(), width / height), Scene(stock)
         scene.show_surface(exact)
         timed("picture", lambda report: scene.render(camera, width, height, progress=report).write(picture))
+    for path in outputs:  # these last: they may be refused
+        if output_suffix(path) in solids.SUFFIXES:
+            result.solids.append(timed("write", lambda report: solids.write(
+                cut, exact, path, error=MESH_ERROR_VOXELS * cut.voxel, only_largest=drop_loose, progress=report)))
     seconds["total"] = time.perf_counter() - started
     return result
 

@@ -2,6 +2,7 @@
 """STEP files of what is left of a stock: with faces as they were cut where all of it is known, else of facets."""
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import Optional
 
@@ -36,7 +37,7 @@ class Written:
 
 
 def facets(mesh: Mesh, progress: Report = None) -> brep.Brep:
-    """Each triangle of a closed mesh a plane. ValueError: open, empty, a hollow inside, too many."""
+    """Each triangle of a closed mesh a plane. ValueError: open, empty, a hollow inside, too many, one without area."""
     if not mesh.triangle_count or not mesh.closed:
         raise ValueError("a solid is made of a closed mesh")
     if mesh.triangle_count > FACETS_MAX:
@@ -55,17 +56,20 @@ def _add(made: brep.Brep, mesh: Mesh) -> None:
     """One shell more."""
     corner, first = len(made.corners), len(made.faces)
     made.corners.extend(tuple(place) for place in memoryview(mesh.vertices).tolist())
-    edges: dict[tuple[int, int], int] = {}
+    edges: defaultdict[tuple[int, int], list[int]] = defaultdict(list)  #: with one triangle so far
     for triangle in memoryview(mesh.triangles).tolist():
         a, b, c = (made.corners[corner + vertex] for vertex in triangle)
         loop = []
         for start, end in zip(triangle, (*triangle[1:], triangle[0])):
-            forwards = (end, start) not in edges
-            if forwards:
-                edges[start, end] = len(made.edges)
-                made.edges.append(brep.Edge(corner + start, corner + end))
-            loop.append((edges[start, end] if forwards else edges[end, start], forwards))
+            if edges[end, start]:
+                loop.append((edges[end, start].pop(), False))
+                continue
+            edges[start, end].append(len(made.edges))
+            loop.append((len(made.edges), True))
+            made.edges.append(brep.Edge(corner + start, corner + end))
         normal = unit(cross(add(b, a, -1), add(c, a, -1)))
+        if not any(normal):
+            raise ValueError(f"a triangle at ({a[0]:g}, {a[1]:g}, {a[2]:g}) has no area")
         made.faces.append(brep.Face(Shape(PLANE, a, normal, 0.0, 0.0), True, [loop]))
     made.shells.append(list(range(first, len(made.faces))))
 
@@ -77,6 +81,8 @@ def write_facets(mesh: Mesh, path: str, reason: str, progress: Report = None) ->
     except ValueError as problem:
         raise ValueError(f"{path}: cannot be written: {problem}; faces as they were cut are not possible: {reason}") from None
     step.write(made, path)
+    if progress is not None:
+        progress(1.0)
     return Written(path, len(made.faces), reason)
 
 
@@ -95,4 +101,6 @@ def write(stock: Stock, surface: Surface, path: str, *, error: float, only_large
         coarse = Mesh.from_stock(stock, error, surface=surface, progress=share(progress, 0.8, 0.9))
         return write_facets(largest(coarse) if only_largest else coarse, path, str(problem), share(progress, 0.9, 1))
     step.write(made, path)
+    if progress is not None:
+        progress(1.0)
     return Written(path, len(made.faces))

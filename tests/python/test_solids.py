@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """STEP files: faces as they were cut where these are known, else facets, and the reason."""
 import json
+import random
 import re
 
 import pytest
@@ -103,3 +104,34 @@ def test_meshes_and_too_many(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(solids, "FACETS_MAX", 3)
     assert main(words) == 2 and "too many for facets" in capsys.readouterr().err
     assert not (tmp_path / "part.step").exists()
+
+
+def test_solids_that_touch_along_an_edge():
+    """Four triangles share an edge there: in any order each edge of the file has two."""
+    vertices, triangles = join((0, 0, 0), (1, 1, 1), (1, 1, 0), (2, 2, 1))
+    number = {place: index for index, place in enumerate(dict.fromkeys(vertices))}
+    triangles = [tuple(number[vertices[vertex]] for vertex in triangle) for triangle in triangles]
+    for seed in range(20):
+        random.Random(seed).shuffle(triangles)
+        made = solids.facets(swarf.Mesh(list(number), triangles))
+        uses = [(edge, forwards) for face in made.faces for loop in face.loops for edge, forwards in loop]
+        assert sorted(uses) == [(edge, way) for edge in range(len(made.edges)) for way in (False, True)]
+
+
+def test_a_triangle_without_area_is_no_face():
+    vertices, triangles = join((0, 0, 0), (1, 1, 1))
+    (a, b, c), *others = triangles
+    middle = tuple((p + q) / 2 for p, q in zip(vertices[a], vertices[b]))
+    split = [(a, len(vertices), c), (len(vertices), b, c), (a, b, len(vertices)), *others]
+    with pytest.raises(ValueError, match="no area"):
+        solids.facets(swarf.Mesh([*vertices, middle], split))
+
+
+def test_a_refused_solid_leaves_the_rest(tmp_path, capsys, monkeypatch):
+    program = tmp_path / "ramp.nc"
+    program.write_text("G21 G90\nT1 M6\nS1000 M3\nG0 X10 Y20 Z5\nG1 Z-1 F100\nG1 X45 Y25 Z-4\nG0 Z5\nM30\n")
+    monkeypatch.setattr(solids, "FACETS_MAX", 3)
+    names = [str(tmp_path / name) for name in ("part.step", "part.stl", "part.png")]
+    assert main(["simulate", str(program), *WORDS, "--output", names[0], "--output", names[1], "--picture", names[2]]) == 2
+    assert "too many for facets" in capsys.readouterr().err
+    assert not (tmp_path / "part.step").exists() and (tmp_path / "part.stl").exists() and (tmp_path / "part.png").exists()

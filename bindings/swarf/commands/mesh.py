@@ -86,13 +86,19 @@ def is_streamed(arguments: argparse.Namespace) -> bool:
                                               or arguments.measure or arguments.budget)
 
 
+def is_solid(path: str) -> bool:
+    """Whether a file is one of solids, by its suffix."""
+    return os.path.splitext(path)[1].lower() in solids.SUFFIXES
+
+
 def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> None:
     """The mesh, or its parts, to all files."""
     several = arguments.split or bool(arguments.split_at)
+    outputs = sorted(arguments.output, key=is_solid)  # solids last: they may be refused
     for number, part in enumerate(parts_of(mesh, arguments), 1):
         tints = colours.by_thickness(part) if arguments.thickness and part.triangle_count else None
-        for path in arguments.output:
-            if os.path.splitext(path)[1].lower() in solids.SUFFIXES:
+        for path in outputs:
+            if is_solid(path):
                 solids.write_facets(part, numbered(path, number) if several else path, NO_PROGRAM,
                                     lambda fraction: bar("write", fraction))
                 continue
@@ -142,7 +148,7 @@ def run(arguments: argparse.Namespace) -> int:
         json.dump(measures(mesh, arguments.thickness), sys.stdout, indent=2, allow_nan=False)
         print()
     for path in arguments.output:
-        if os.path.splitext(path)[1].lower() in solids.SUFFIXES:
+        if is_solid(path):
             print(f"swarf: note: {path}: facets, no faces as they were cut: {NO_PROGRAM}", file=sys.stderr)
     if made is None:
         return DONE
