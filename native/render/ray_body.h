@@ -139,8 +139,10 @@ INLINE mask first_root(const lanes c[4], mask wanted, lanes *root_out)
         const lanes next = pick(held, clamped(newton, lo, hi), middle);
         const lanes moved = size(next - s);
         s = pick(going, next, s);
-        /* What Newton's method leaves is the square of its step times bend / slope, about. */
-        const mask near = both(held, less(moved * moved * size(bend), all(root_tolerance) * size(slope)));
+        /* What Newton's method leaves is the square of its step times bend / slope, about; the bend changes on the way.
+         */
+        const lanes bent = size(bend) + size(c[3]) * moved;
+        const mask near = both(held, less(moved * moved * bent, all(root_tolerance) * size(slope)));
         going = both(except(going, near), less(all(root_tolerance), moved));
     }
     *root_out = pick(inside, zero, pick(search, s, one));

@@ -285,7 +285,7 @@ static swarf_status append_both(swarf_undo_column *out, const swarf_undo_column 
 {
     const struct entry a = entry_at(older, older_at), b = entry_at(newer, newer_at);
     if (a.kind != KIND_ROWS) return append_bytes(out, older->bytes + older_at, entry_bytes(&a));
-    _Alignas(64) float values[SWARF_LEAF_SIZE];
+    _Alignas(64) float values[SWARF_LEAF_SIZE] = {0};
     put_rows(&b, newer->bytes + newer_at + sizeof b, values);
     put_rows(&a, older->bytes + older_at + sizeof a, values);
     return append_entry(out, b, a.rows | a.same | b.rows | b.same, values);
