@@ -13,7 +13,8 @@ PATH=/usr/bin:/bin:$PATH
 packages_build=(g++ cmake ninja-build libopenvdb-dev libembree-dev libtbb-dev libboost-iostreams-dev libpng-dev
     zlib1g-dev python3-dev)
 packages_freecad=(freecad python3-numpy)
-packages_tests=(python3-pytest python3-hypothesis python3-numpy xvfb xauth libgl1-mesa-dri pkg-config libcgal-dev lib3mf-dev)
+packages_tests=(python3-pytest python3-hypothesis python3-numpy xvfb xauth libgl1-mesa-dri ffmpeg pkg-config libcgal-dev
+    lib3mf-dev)
 packages_ci=(git clang-format clang-tidy cppcheck shellcheck dpkg-dev file)
 
 die() {

@@ -74,16 +74,20 @@ def _add(made: brep.Brep, mesh: Mesh) -> None:
     made.shells.append(list(range(first, len(made.faces))))
 
 
+def _written(made: brep.Brep, path: str, reason: Optional[str], progress: Report) -> Written:
+    step.write(made, path)
+    if progress is not None:
+        progress(1.0)  # it is there: too late to cancel
+    return Written(path, len(made.faces), reason)
+
+
 def write_facets(mesh: Mesh, path: str, reason: str, progress: Report = None) -> Written:
     """A STEP file of facets. ValueError as facets(), with the reason why it is none of faces; OSError."""
     try:
         made = facets(mesh, share(progress, 0, 0.7))
     except ValueError as problem:
         raise ValueError(f"{path}: cannot be written: {problem}; faces as they were cut are not possible: {reason}") from None
-    step.write(made, path)
-    if progress is not None:
-        progress(1.0)
-    return Written(path, len(made.faces), reason)
+    return _written(made, path, reason, progress)
 
 
 def write(stock: Stock, surface: Surface, path: str, *, error: float, only_largest: bool = False,
@@ -100,7 +104,4 @@ def write(stock: Stock, surface: Surface, path: str, *, error: float, only_large
     except ValueError as problem:  # brep.NotAnalytic among them
         coarse = Mesh.from_stock(stock, error, surface=surface, progress=share(progress, 0.8, 0.9))
         return write_facets(largest(coarse) if only_largest else coarse, path, str(problem), share(progress, 0.9, 1))
-    step.write(made, path)
-    if progress is not None:
-        progress(1.0)
-    return Written(path, len(made.faces))
+    return _written(made, path, None, progress)
