@@ -465,8 +465,9 @@ PyObject *measure_deviation(PyObject *module, PyObject *args, PyObject *keywords
 }
 
 const char compare_place_doc[] = "compare_place(stock, design)\n--\n\n"
-                                 "What makes it doubtful that a design Solid belongs to a stock: another place, "
-                                 "another unit; \"\" when all looks well.";
+                                 "What makes it doubtful that a design Solid belongs to a stock -> (kind, value, "
+                                 "factor, text): \"\" when\nall looks well, \"unit\" (value times as large, units "
+                                 "that are factor apart), \"empty\", \"beside\", \"out\"\n(by value mm).";
 
 PyObject *compare_place(PyObject *module, PyObject *args, PyObject *keywords)
 {
@@ -476,12 +477,12 @@ PyObject *compare_place(PyObject *module, PyObject *args, PyObject *keywords)
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!:compare_place", names, state->stock, &stock, state->solid,
                                      &design))
         return NULL;
-    char text[512];
+    swarf_place place;
     native_call call;
     if (call_begin(&call, NULL)) return NULL;
-    const swarf_status status =
-        swarf_compare_place(((stock_object *)stock)->handle, solid_of(design), text, sizeof text);
-    return call_end(&call, state, status) ? NULL : PyUnicode_FromString(text);
+    const swarf_status status = swarf_compare_place(((stock_object *)stock)->handle, solid_of(design), &place);
+    if (call_end(&call, state, status)) return NULL;
+    return Py_BuildValue("sdds", swarf_place_name((swarf_place_kind)place.kind), place.value, place.factor, place.text);
 }
 
 const char compare_overlap_doc[] =

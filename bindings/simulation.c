@@ -29,6 +29,9 @@ static PyStructSequence_Field finding_fields[] = {
     {"line", "Line of the source, from 1; 0: unknown."},
     {"tool", "Tool number."},
     {"text", "What was noticed."},
+    {"kind", "\"no tool\", \"unknown tool\", \"no flutes\", \"axis\" or \"idle\"."},
+    {"axis", "Letter of the axis of \"axis\", else \"\"."},
+    {"value", "Where that axis goes, degrees or mm."},
     {NULL, NULL},
 };
 
@@ -36,7 +39,7 @@ PyStructSequence_Desc finding_desc = {
     .name = "swarf.Finding",
     .doc = "Something the simulation noticed.",
     .fields = finding_fields,
-    .n_in_sequence = 6,
+    .n_in_sequence = 9,
 };
 
 static PyObject *finding_to_python(module_state *state, const swarf_finding *finding)
@@ -49,17 +52,11 @@ static PyObject *finding_to_python(module_state *state, const swarf_finding *fin
         PyLong_FromUnsignedLong(finding->line),
         PyLong_FromLong(finding->tool),
         PyUnicode_DecodeUTF8(finding->text, (Py_ssize_t)strnlen(finding->text, sizeof finding->text), "replace"),
+        PyUnicode_FromString(swarf_finding_name((swarf_finding_kind)finding->kind)),
+        PyUnicode_FromStringAndSize(&"ABCUVW"[finding->axis], finding -> kind == SWARF_FINDING_AXIS),
+        PyFloat_FromDouble(finding->value),
     };
-    PyObject *result = PyStructSequence_New(state->finding);
-    for (Py_ssize_t i = 0; i < 6; i++) {
-        if (result && items[i])
-            PyStructSequence_SetItem(result, i, items[i]);
-        else {
-            Py_XDECREF(items[i]);
-            Py_CLEAR(result);
-        }
-    }
-    return result;
+    return make_sequence(state->finding, items, 9);
 }
 
 static PyObject *simulation_findings(PyObject *self, void *Py_UNUSED(closure))

@@ -579,6 +579,9 @@ class Finding(NamedTuple):
     line: int
     tool: int
     text: str
+    kind: Literal["no tool", "unknown tool", "no flutes", "axis", "idle"]
+    axis: str
+    value: float
 
 @final
 class Simulation:
@@ -957,8 +960,9 @@ def measure_deviation(
     is not to be measured; ``first`` is the Stock before the first cut, to tell where no move went; ``program`` and
     ``tools`` tell the moves behind each cluster. The stocks are unchanged."""
 
-def compare_place(stock: Stock, design: Solid) -> str:
-    """What makes it doubtful that a design belongs to a stock: another place, another unit; "" when all looks well."""
+def compare_place(stock: Stock, design: Solid) -> tuple[str, float, float, str]:
+    """What makes it doubtful that a design belongs to a stock -> (kind, value, factor, text): "" when all looks well, "unit"
+    (value times as large, units that are factor apart), "empty", "beside", "out" (by value mm)."""
 
 def compare_overlap(stock: Stock, solid: Solid, *, progress: Progress = None) -> tuple[float, tuple[float, float, float]]:
     """How deep (mm, 0.0: not at all) a Solid, a fixture, reaches into a stock, and where. No more than six voxels are told;

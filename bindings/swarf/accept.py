@@ -9,6 +9,10 @@ An acceptance names a reason and at least one thing by which it knows its findin
 kind: as in the report; operation, line, text (a part of it); place in mm, where the finding lies no farther than
 ``within`` (default 1 mm); most: only while what was measured (mm of a deviation, depth of a contact, value of a load) is
 no greater than this. Where it is only known to be at least so much, "most" accepts nothing.
+
+What a deviation measures depends on how it was looked at: with ``allowance`` (mm) only deviations over this very
+allowance are known, with ``tolerance`` (mm) only those beyond this tolerance or a coarser one: a tighter one is asked of
+the part anew, and brings places along that nobody has looked at.
 """
 from __future__ import annotations
 
@@ -17,7 +21,10 @@ import math
 from dataclasses import dataclass
 from typing import Any, Optional, Sequence
 
-KEYS = ("reason", "kind", "operation", "line", "text", "place", "within", "most")
+KEYS = ("reason", "kind", "operation", "line", "text", "place", "within", "most", "tolerance", "allowance")
+
+#: mm; lengths that people set are the same within this.
+SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -32,6 +39,8 @@ class Acceptance:
     place: Optional[tuple[float, float, float]] = None
     within: float = 1.0
     most: Optional[float] = None
+    tolerance: Optional[float] = None
+    allowance: Optional[float] = None
 
     def knows(self, finding: Any) -> bool:
         """Whether this is about a verify.Verdict."""
@@ -42,7 +51,11 @@ class Acceptance:
                 and (self.place is None
                      or (finding.place is not None and math.dist(self.place, finding.place) <= self.within))
                 and (self.most is None or (finding.amount is not None and not finding.at_least
-                                           and abs(finding.amount) <= self.most)))
+                                           and abs(finding.amount) <= self.most))
+                and (self.tolerance is None
+                     or (finding.tolerance is not None and finding.tolerance >= self.tolerance - SAME))
+                and (self.allowance is None
+                     or (finding.allowance is not None and abs(finding.allowance - self.allowance) <= SAME)))
 
 
 def _number(value: Any) -> bool:
@@ -68,6 +81,10 @@ def make(entry: Any, where: str) -> Acceptance:
     for key in ("within", "most"):
         if key in entry and not (_number(entry[key]) and entry[key] >= 0):
             raise ValueError(f"{where}: {key}: a number of 0 or more is wanted")
+    if "tolerance" in entry and not (_number(entry["tolerance"]) and entry["tolerance"] > 0):
+        raise ValueError(f"{where}: tolerance: a number above 0 is wanted")
+    if "allowance" in entry and not _number(entry["allowance"]):
+        raise ValueError(f"{where}: allowance: a number is wanted")
     return Acceptance(**{**entry, "place": None if place is None else tuple(place)})
 
 

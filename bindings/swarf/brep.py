@@ -20,6 +20,7 @@ from .progress import Report, check, share
 from .regions import NotAnalytic, Regions, find
 from .shapes import (CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet, on,
                      tangency, unit)
+from .wording import Said
 
 __all__ = ["Brep", "Edge", "Face", "NotAnalytic", "make"]
 
@@ -111,8 +112,8 @@ class _Maker:
         self.chain_of: dict[tuple[int, int], tuple[int, bool]] = {}  # half-edge of a border -> its chain, forwards
         self.corner_of: dict[int, int] = {}
 
-    def fail(self, text: str) -> NotAnalytic:
-        return NotAnalytic(text, self.regions.known_share)
+    def fail(self, key: str, **values: float) -> NotAnalytic:
+        return NotAnalytic(Said(key, **values), self.regions.known_share)
 
     # ---- what is beside what ----
 
@@ -178,11 +179,11 @@ class _Maker:
         found = meet(self.contact(chain), place)
         chain.touching = found is not None and found[1] < SLOPPY and distance(found[0], place) < 3 * self.voxel
 
-    def solve(self, equations: Sequence[Equations], start: Vector, what: str) -> Vector:
+    def solve(self, equations: Sequence[Equations], start: Vector, lost: str) -> Vector:
         check(self.progress, self.done)
         found = meet(equations, start)
         if found is None or found[1] > SLOPPY or distance(found[0], start) > 4 * self.voxel:
-            raise self.fail("%s is not found near (%.3f, %.3f, %.3f)" % (what, *start))
+            raise self.fail(lost, x=start[0], y=start[1], z=start[2])
         self.left = max(self.left, found[1])
         return found[0]
 
@@ -199,7 +200,7 @@ class _Maker:
         cells: dict[tuple[int, ...], list[int]] = {}  # corners by cubes as wide as they may be apart
         for vertex in sorted(beside):
             place = self.solve(self.equations(sorted(beside[vertex])) + meeting.get(vertex, []),
-                               self.regions.vertices[vertex], "a corner")
+                               self.regions.vertices[vertex], "corner lost")
             cell = [math.floor(x / SLOPPY) for x in place]
             near = (k for way in product((-1, 0, 1), repeat=3)
                     for k in cells.get((cell[0] + way[0], cell[1] + way[1], cell[2] + way[2]), ())
@@ -212,7 +213,7 @@ class _Maker:
             if chain.closed:
                 vertex = chain.vertices[0]
                 self.corner_of[vertex] = len(corners)
-                corners.append(self.solve(self.contact(chain), self.regions.vertices[vertex], "an edge"))
+                corners.append(self.solve(self.contact(chain), self.regions.vertices[vertex], "edge lost"))
         return corners
 
     def settle_corners(self, corners: list[Vector]) -> None:
@@ -261,7 +262,7 @@ class _Maker:
             for part in range(1, parts + 1):
                 if b is mesh[-1] and part == parts:
                     break
-                found.append(self.solve(equations, add(a, add(b, a, -1), part / parts), "an edge"))
+                found.append(self.solve(equations, add(a, add(b, a, -1), part / parts), "edge lost"))
         if chain.touching:
             found = _forwards(found, end)
         return found + [end]
@@ -283,7 +284,7 @@ class _Maker:
     def curve(self, chain: _Chain, start: int, end: int, points: list[Vector]) -> Edge:
         """A curve of cubics, finer and finer until their middles are on it."""
         if chain.touching:
-            raise self.fail("two faces touch along a curve that is no line and no circle")
+            raise self.fail("curve touched")
         equations = self.contact(chain)
         directions = [self.direction(chain, point, add(points[min(k + 1, len(points) - 1)], points[max(k - 1, 0)], -1))
                       for k, point in enumerate(points)]
@@ -292,12 +293,12 @@ class _Maker:
             length = distance(points[k], points[k + 1])
             middle = add(add(points[k], add(points[k + 1], points[k], -1), 0.5),
                          add(directions[k], directions[k + 1], -1), length / 8)
-            true = self.solve(equations, middle, "an edge")
+            true = self.solve(equations, middle, "edge lost")
             if distance(true, middle) < CURVE or length < 1e-3 * self.voxel:
                 k += 1
                 continue
             if max(distance(points[k], true), distance(true, points[k + 1])) > HALF * length or len(points) >= MOST_POINTS:
-                raise self.fail("an edge is no smooth curve near (%.3f, %.3f, %.3f)" % true)
+                raise self.fail("curve rough", x=true[0], y=true[1], z=true[2])
             directions.insert(k + 1, self.direction(chain, true, add(points[k + 1], points[k], -1)))
             points.insert(k + 1, true)
         return Edge(start, end, points=points, directions=directions)
@@ -327,14 +328,14 @@ class _Maker:
         faces, shells = [], {}
         for region, loops in enumerate(self.regions.loops()):
             if not loops:
-                raise self.fail("a face without any edge")
+                raise self.fail("face without edge")
             made = []
             for loop in loops:
                 steps = [self.chain_of[half] for half in loop]
                 kept = [(edge_of[chain], forwards) for k, (chain, forwards) in enumerate(steps)
                         if loop[k][0] in self.corner_of and chain in edge_of]
                 if not kept:
-                    raise self.fail("a face that is a point")
+                    raise self.fail("face is point")
                 made.append(kept)
             faces.append(Face(self.shape(region), self.regions.outwards[region], made))
             shells.setdefault(self.regions.shell[region], []).append(region)
@@ -349,12 +350,12 @@ class _Maker:
             for loop in face.loops:
                 ends = [(made.edges[edge].start, made.edges[edge].end)[::1 if forwards else -1] for edge, forwards in loop]
                 if any(end != start for (_, end), (start, _) in zip(ends, ends[1:] + ends[:1])):
-                    raise self.fail("the edges of a face do not close")
+                    raise self.fail("loops open")
                 if used & set(loop):
-                    raise self.fail("an edge is used twice")
+                    raise self.fail("edge twice")
                 used.update(loop)
         if len(used) != 2 * len(made.edges):
-            raise self.fail("an edge has no face on one side")
+            raise self.fail("edge one side")
 
 
 def _forwards(points: list[Vector], end: Vector) -> list[Vector]:
@@ -407,17 +408,16 @@ def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = N
     (Mesh.from_stock(error=voxel / 50)). NotAnalytic where it is not bounded by planes, cylinders, cones, spheres and tori
     alone, or of too many faces; ValueError for a mesh that is empty or open."""
     if not mesh.triangle_count or not mesh.closed:
-        raise ValueError("a solid is made of a closed mesh")
+        raise ValueError(Said("no mesh"))
     if any(shell.volume_mm3 <= 0 for shell in mesh.shells()):
-        raise NotAnalytic("there is a hollow inside", None)
+        raise NotAnalytic(Said("hollow"), None)
     regions = find(mesh, surface, voxel, moves, share(progress, 0, 0.5))
     if regions.unknown:
         x, y, z = regions.unknown[0]
         percent = min(math.floor(1000 * regions.known_share) / 10, 99.9)
-        raise NotAnalytic("%.1f %% of the surface is on planes, cylinders, cones, spheres and tori, but not what is near "
-                          "(%.2f, %.2f, %.2f)" % (percent, x, y, z), regions.known_share)
+        raise NotAnalytic(Said("unknown surface", percent=percent, x=x, y=y, z=z), regions.known_share)
     maker = _Maker(regions, voxel)
     try:
         return maker.make(share(progress, 0.5, 1))
     except LookupError:  # borders that do not lead on
-        raise maker.fail("its faces do not hang together") from None
+        raise maker.fail("faces apart") from None

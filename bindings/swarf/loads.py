@@ -17,6 +17,7 @@ from typing import Any, Iterable, Mapping, Optional, Sequence
 
 from ._native import Program
 from .records import MOVE, SECTION, section_and_kind
+from .wording import Said
 
 #: Words of limits: the load (a key of Check.loads), its unit, its name in texts.
 KINDS = {
@@ -147,11 +148,11 @@ class Excess:
     count: int
 
     @property
-    def text(self) -> str:
+    def text(self) -> Said:
         """What is wrong, for people."""
         _, unit, name = KINDS[self.kind]
-        others = "" if self.count == 1 else f"; {self.count} moves exceed it, this one most"
-        return f"{name} {self.value:.4g} {unit} exceeds the limit of {self.most:g} {unit}{others}"
+        return Said("load" if self.count == 1 else "loads", load=Said(name), value=self.value, unit=unit, most=self.most,
+                    count=self.count)
 
 
 def _moves(program: Program) -> Iterable[tuple[int, int]]:

@@ -13,6 +13,7 @@ from typing import Callable, Optional, Sequence
 from ._native import Lump, Stock
 from .job import Job, operation_of
 from .progress import Report, share
+from .wording import Said
 
 #: Pieces of fewer voxels are crumbs: what a voxel between two passes leaves may be none.
 CRUMB_VOXELS = 27
@@ -31,11 +32,10 @@ class Loose:
     line: int
 
     @property
-    def text(self) -> str:
+    def text(self) -> Said:
         """What happened, in a sentence."""
-        place = ", ".join(f"{value:.4g}" for value in self.lump.inside)
-        freed = "it was before the program began" if self.move < 0 else "this move frees it"
-        return f"a piece of {self.lump.volume_mm3:.4g} mm3 at {place} is loose; {freed}"
+        x, y, z = self.lump.inside
+        return Said("loose before" if self.move < 0 else "loose", volume=self.lump.volume_mm3, x=x, y=y, z=z)
 
 
 @dataclass(frozen=True)

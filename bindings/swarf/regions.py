@@ -11,6 +11,7 @@ from typing import Optional
 from ._native import Mesh, Surface
 from .progress import TURNS, Report, check, share
 from .shapes import Shape, Vector, add, cross, dot
+from .wording import Said
 
 #: mm; shapes that differ by less are one: what the digits of a program leave open.
 SAME = 1e-4
@@ -33,9 +34,9 @@ class NotAnalytic(ValueError):
     """A stock that is not bounded by these faces alone, or whose edges are not found. ``share``: part of the area that
     lies on such faces; None where that was not measured."""
 
-    def __init__(self, text: str, share: Optional[float]) -> None:
+    def __init__(self, text: Said, share: Optional[float]) -> None:
         super().__init__(text)
-        self.share = share
+        self.said, self.share = text, share
 
 
 class Ticks:
@@ -87,7 +88,7 @@ class Regions:
                 loop.append(half)
                 half = self._next(half)
             if half != first:
-                raise NotAnalytic("the edges of a face do not close", self.known_share)
+                raise NotAnalytic(Said("loops open"), self.known_share)
             found[borders[first][0]].append(loop)
         return found
 
@@ -134,7 +135,7 @@ class _Parts:
                 numbers[key] = self._number(Shape.of_row(row)) if row[0] else 0
                 if len(self.shapes) > SHAPES_MAX + 1:
                     known = sum(area for area, row in zip(self.area, rows) if row[0])
-                    raise NotAnalytic("it has faces of more than %d shapes" % SHAPES_MAX, known / sum(self.area))
+                    raise NotAnalytic(Said("too many shapes", most=SHAPES_MAX), known / sum(self.area))
             self.shape_of.append(numbers[key])
             ticks.tick()
 

@@ -123,7 +123,7 @@ def simulate(
         result.contour = result.mesh.contour
     cut = stock
     if drop_loose and (result.loose.pieces or result.loose.crumbs):
-        whole = Mesh.from_stock(stock) if result.mesh is None else result.mesh
+        whole = timed("mesh", lambda report: Mesh.from_stock(stock, progress=report)) if result.mesh is None else result.mesh
         result.stock = stock = timed("mesh", lambda report: Stock.from_mesh(largest(whole), stock.voxel, progress=report))
         result.mesh = None if result.mesh is None else largest(whole)
         result.dropped_mm3 = simulation.volume_final - stock.volume()

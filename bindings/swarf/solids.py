@@ -11,6 +11,7 @@ from ._native import Mesh, Stock, Surface
 from .parts import largest, pieces
 from .progress import Report, check, share
 from .shapes import PLANE, Shape, add, cross, unit
+from .wording import Said
 
 __all__ = ["SUFFIXES", "Written", "facets", "write", "write_facets"]
 
@@ -74,8 +75,14 @@ def _add(made: brep.Brep, mesh: Mesh) -> None:
     made.shells.append(list(range(first, len(made.faces))))
 
 
+def why(problem: ValueError) -> str:
+    """What such an error says, a wording.Said where it is one of faces that are not possible."""
+    said = problem.args[0] if problem.args else ""
+    return said if isinstance(said, Said) else str(problem)
+
+
 def _written(made: brep.Brep, path: str, reason: Optional[str], progress: Report) -> Written:
-    step.write(made, path)
+    step.write(made, path, progress=progress)
     if progress is not None:
         progress(1.0)  # it is there: too late to cancel
     return Written(path, len(made.faces), reason)
@@ -87,7 +94,7 @@ def write_facets(mesh: Mesh, path: str, reason: str, progress: Report = None) ->
         made = facets(mesh, share(progress, 0, 0.7))
     except ValueError as problem:
         raise ValueError(f"{path}: cannot be written: {problem}; faces as they were cut are not possible: {reason}") from None
-    return _written(made, path, reason, progress)
+    return _written(made, path, reason, share(progress, 0.7, 1))
 
 
 def write(stock: Stock, surface: Surface, path: str, *, error: float, only_largest: bool = False,
@@ -99,9 +106,9 @@ def write(stock: Stock, surface: Surface, path: str, *, error: float, only_large
     mesh = largest(mesh) if only_largest else mesh
     try:
         if mesh.triangle_count > TRIANGLES_MAX:
-            raise ValueError(f"its mesh has {mesh.triangle_count} triangles, and faces are told of {TRIANGLES_MAX} at most")
+            raise ValueError(Said("too many triangles", triangles=mesh.triangle_count, most=TRIANGLES_MAX))
         made = brep.make(mesh, surface, stock.voxel, progress=share(progress, 0.4, 0.8))
     except ValueError as problem:  # brep.NotAnalytic among them
         coarse = Mesh.from_stock(stock, error, surface=surface, progress=share(progress, 0.8, 0.9))
-        return write_facets(largest(coarse) if only_largest else coarse, path, str(problem), share(progress, 0.9, 1))
-    return _written(made, path, None, progress)
+        return write_facets(largest(coarse) if only_largest else coarse, path, why(problem), share(progress, 0.9, 1))
+    return _written(made, path, None, share(progress, 0.8, 1))

@@ -7,6 +7,7 @@ from typing import Iterable
 
 from .brep import Brep, Edge, Face
 from .files import write_text
+from .progress import Report, share, told
 from .shapes import CONE, CYLINDER, PLANE, SPHERE, Vector, add, cross, distance, dot, unit
 
 
@@ -132,9 +133,9 @@ class _Writer:
             "DEGENERATE_" if spindle else "", self.placement(shape.point, shape.axis, towards), _number(shape.radius),
             _number(shape.second), ",.T." if spindle else ""))
 
-    def solid(self, brep: Brep, faces: list[int], vertices: list[str], curves: list[str]) -> str:
+    def solid(self, brep: Brep, faces: list[int], vertices: list[str], curves: list[str], progress: Report) -> str:
         made = []
-        for number in faces:
+        for number in told(faces, len(faces), progress):
             face = brep.faces[number]
             bounds = []
             for place, loop in enumerate(face.loops):
@@ -146,13 +147,18 @@ class _Writer:
         return self.put("MANIFOLD_SOLID_BREP('',%s)" % self.put("CLOSED_SHELL('',%s)" % _list(made)))
 
 
-def text(brep: Brep, name: str = "stock") -> str:
-    """The file of a Brep, mm."""
+def text(brep: Brep, name: str = "stock", progress: Report = None) -> str:
+    """The file of a Brep, mm. Cancelled."""
     out = _Writer()
-    vertices = [out.put("VERTEX_POINT('',%s)" % out.point(corner)) for corner in brep.corners]
+    vertices = [out.put("VERTEX_POINT('',%s)" % out.point(corner))
+                for corner in told(brep.corners, len(brep.corners), share(progress, 0, 0.1))]
     curves = [out.put("EDGE_CURVE('',%s,%s,%s,.T.)" % (vertices[edge.start], vertices[edge.end], out.curve(edge, brep)))
-              for edge in brep.edges]
-    solids = [out.solid(brep, faces, vertices, curves) for faces in brep.shells]
+              for edge in told(brep.edges, len(brep.edges), share(progress, 0.1, 0.5))]
+    solids, done = [], 0
+    for faces in brep.shells:
+        begin, done = done, done + len(faces)
+        solids.append(out.solid(brep, faces, vertices, curves, share(
+            progress, 0.5 + 0.5 * begin / len(brep.faces), 0.5 + 0.5 * done / len(brep.faces))))
     word = _string(name)
     context = out.put("APPLICATION_CONTEXT('automotive design')")
     out.put("APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,%s)" % context)
@@ -180,6 +186,6 @@ def text(brep: Brep, name: str = "stock") -> str:
         *("#%d=%s;" % (number, line) for number, line in enumerate(out.lines, 1)), "ENDSEC;", "END-ISO-10303-21;", ""])
 
 
-def write(brep: Brep, path: str, name: str = "stock") -> None:
-    """Write a Brep; beside the target and renamed. OSError."""
-    write_text(text(brep, name), path)
+def write(brep: Brep, path: str, name: str = "stock", progress: Report = None) -> None:
+    """Write a Brep; beside the target and renamed. OSError, Cancelled: then nothing is written."""
+    write_text(text(brep, name, progress), path)

@@ -120,9 +120,9 @@ def _make_shape(description: dict[str, Any], voxel: float, rows: Optional[Rows],
         raise GeometryError(f"{description.get('path', 'stock')}: {error}") from None
 
 
-def _box_left(stock: Stock, surface: Optional[Surface], what: str) -> Box:
+def _box_left(stock: Stock, surface: Optional[Surface], what: str, progress: Report) -> Box:
     """The box of what is left of a stock, as its mesh tells."""
-    box = Mesh.from_stock(stock, surface=surface).bounding_box
+    box = Mesh.from_stock(stock, surface=surface, progress=progress).bounding_box
     if box is None:
         raise GeometryError(f"{what}: nothing is left of the stock that could be set up again")
     return box
@@ -132,13 +132,14 @@ def _read_file(description: dict[str, Any], voxel: Optional[float], resolution: 
                progress: Report) -> First:
     """Of a .vdb file, placed."""
     path = os.fspath(description["path"])
-    stock = Stock.read(path, progress=progress)
+    stock = Stock.read(path, progress=share(progress, 0, 0.4))
     if resolution is not None or (voxel is not None and not math.isclose(voxel, stock.voxel, rel_tol=1e-6)):
         raise ValueError(f"{path} has voxels of {stock.voxel:g} mm: leave voxel size and resolution out")
     if "placement" not in description:
         return First(stock)
-    rows = rows_of(description["placement"], lambda: _box_left(stock, None, path))
-    return First(stock.placed(rows), resampled_voxels=0.0 if is_quarter(rows) else RESAMPLED_FIELD)
+    rows = rows_of(description["placement"], lambda: _box_left(stock, None, path, share(progress, 0.4, 0.6)))
+    return First(stock.placed(rows, progress=share(progress, 0.6, 1)),
+                 resampled_voxels=0.0 if is_quarter(rows) else RESAMPLED_FIELD)
 
 
 def _simulate(job: Job, stock: Stock, progress: Report) -> Simulation:
@@ -161,9 +162,9 @@ def _play_before(description: dict[str, Any], voxel: Optional[float], depth: int
         first.played.append((job, play(job, left, share(progress, 0.5, 0.8))))
     else:
         first.kept.append((job, os.fspath(kept)))
-    rows = rows_of(description.get("placement", IDENTITY), lambda: _box_left(left, before, job.name))
+    rows = rows_of(description.get("placement", IDENTITY), lambda: _box_left(left, before, job.name, share(progress, 0.8, 0.85)))
     try:
-        stock = left.placed(rows, voxel=voxel, surface=before, progress=share(progress, 0.8, 1))
+        stock = left.placed(rows, voxel=voxel, surface=before, progress=share(progress, 0.85, 1))
     except GeometryError as error:
         raise GeometryError(f"{job.name}: {error}") from None
     same = is_quarter(rows) and math.isclose(stock.voxel, left.voxel, rel_tol=1e-9)

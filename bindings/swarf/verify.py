@@ -10,15 +10,16 @@ from typing import Any, Callable, Optional, Sequence
 from . import accept as accepting
 from . import loads as loading
 from . import loose, readers
-from ._native import (Check, Cluster, Deviation, Mesh, Scene, Simulation, Solid, Stock, compare_overlap, compare_place,
+from ._native import (Check, CheckFinding, Cluster, Deviation, Finding, Mesh, Scene, Simulation, Solid, Stock, compare_overlap, compare_place,
                       measure_deviation)
 from .accept import Acceptance
 from .job import Job, operation_of
 from .loads import Limits
 from .records import MOVE
-from .progress import Report
+from .progress import Report, share
 from .simulate import Progress, Result
 from .stocks import First, make_first
+from .wording import FORMS, Said
 
 #: What a design file can be, by its suffix.
 DESIGN_SUFFIXES = (".stl", ".ply", ".obj")
@@ -32,7 +33,7 @@ class Verdict:
     reason why it does not count, None: it does."""
 
     severity: str
-    text: str
+    text: str  #: a wording.Said, but for what was an exception
     kind: str
     operation: Optional[str] = None
     line: int = 0
@@ -43,6 +44,8 @@ class Verdict:
     accepted: Optional[str] = None
     t: float = 0.0  #: how far along the move it is, 0 .. 1
     at_least: bool = False  #: it may be more than ``amount``
+    tolerance: Optional[float] = None  #: mm, that a deviation is beyond
+    allowance: Optional[float] = None  #: mm, that a deviation is measured over
 
 
 @dataclass
@@ -72,9 +75,9 @@ class Verification:
         deviation = self.deviation.judge(excess=tolerance, gouge=tolerance, allowance=self.allowance, region=self.region,
                                          program=job.program, tools=job.tools, progress=progress)
         found = [finding for finding in self.findings if finding.cluster is None]
-        found += [_cluster_finding(job, cluster, self.complete) for cluster in deviation.clusters]
-        return replace(self, deviation=deviation, tolerance=(tolerance, tolerance),
-                       findings=settle(found, [*job.accepted, *accept]))
+        judged = replace(self, deviation=deviation, tolerance=(tolerance, tolerance))
+        found += [_cluster_finding(judged, cluster) for cluster in deviation.clusters]
+        return replace(judged, findings=settle(found, [*job.accepted, *accept]))
 
     def scene(self) -> Scene:
         """A Scene of what is left of the stock."""
@@ -155,7 +158,7 @@ def verify(
     started = time.perf_counter()
     solid = timed("design", lambda report: Solid(mesh, progress=report))
     fixtures = [*job.fixtures, *fixtures]
-    clamps = [Solid(fixture) for fixture in fixtures]
+    clamps = solids_of(fixtures, None if progress is None else lambda fraction: progress("design", fraction))
     earlier = SetUps(clearance)
     made_first = timed("stock", lambda report: make_first(
         job.stock, voxel=voxel, resolution=resolution, play=earlier.play, progress=report))
@@ -171,10 +174,10 @@ def verify(
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits, region=region)
-    found = [*earlier.findings(made_first), *findings_of(job, checked, stock.voxel), *_load_findings(job, checked, limits),
+    found = [*earlier.findings(made_first), *findings_of(job, checked, stock.voxel, clearance), *_load_findings(job, checked, limits),
              *_design_findings(solid, first, mesh), *fixture_findings(first, clamps),
              *timed("loose", lambda report: loose_findings(job, stock, first, report)),
-             *(_cluster_finding(job, cluster, complete) for cluster in deviation.clusters)]
+             *(_cluster_finding(made, cluster) for cluster in deviation.clusters)]
     made.findings = settle(found, [*job.accepted, *accept])
     seconds["total"] = time.perf_counter() - started
     return made
@@ -184,16 +187,25 @@ def settle(findings: Sequence[Verdict], acceptances: Sequence[Acceptance]) -> li
     """Findings by what is accepted, whatever was accepted of them before: errors, warnings, notes, at last what is
     accepted; a note on each acceptance that knows none. The findings that are given are left alone."""
     settled = [replace(finding, accepted=None) for finding in findings if finding.kind != "acceptance"]
-    settled += [Verdict("note", f"nothing is found any more of what is accepted because {idle.reason!r}", "acceptance",
-                        idle.operation, idle.line or 0, place=idle.place)
+    settled += [Verdict("note", _idle_text(idle), "acceptance", idle.operation, idle.line or 0, place=idle.place)
                 for idle in accepting.apply(acceptances, settled)]
     order = ("error", "warning", "note")
     return sorted(settled, key=lambda found: (found.accepted is not None, order.index(found.severity)))
 
 
-def findings_of(job: Job, checked: Check, voxel: float) -> list[Verdict]:
-    """What Stock.check() found on a job at a voxel size, and what it says of moves that were not simulated."""
-    return [*_check_findings(job, checked, voxel), *_uncut_findings(job, checked)]
+def _idle_text(idle: Acceptance) -> Said:
+    of = {name: value for name, value in (("tolerance", idle.tolerance), ("allowance", idle.allowance))
+          if value is not None}
+    if not of:
+        return Said("idle acceptance", reason=idle.reason)
+    key = "of both" if len(of) == 2 else f"of {next(iter(of))}"
+    return Said("idle acceptance of", reason=idle.reason, circumstances=Said(key, **of))
+
+
+def findings_of(job: Job, checked: Check, voxel: float, clearance: float = 0.0) -> list[Verdict]:
+    """What Stock.check() found on a job at a voxel size and clearance, and what it says of moves that were not
+    simulated."""
+    return [*_check_findings(job, checked, voxel, clearance), *_uncut_findings(job, checked)]
 
 
 class SetUps:
@@ -206,29 +218,46 @@ class SetUps:
 
     def play(self, job: Job, stock: Stock, progress: Report = None) -> Simulation:
         """Play a job on its stock. What Stock.check() raises."""
-        clamps = [Solid(fixture) for fixture in job.fixtures]
+        clamps = solids_of(job.fixtures, share(progress, 0, 0.1))
         doubts = fixture_findings(stock, clamps)
         checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=self._clearance, teeth=job.teeth,
-                              progress=progress)
-        found = [*doubts, *findings_of(job, checked, stock.voxel)]
+                              progress=share(progress, 0.1, 1))
+        found = [*doubts, *findings_of(job, checked, stock.voxel, self._clearance)]
         accepting.apply(job.accepted, found)
         for item in found:
             if item.accepted is None:
-                where = f", line {item.line}" if item.line else ""
-                self._found.append(Verdict(item.severity, f"set-up {job.name!r}{where}: {item.text}", item.kind,
-                                           amount=item.amount, at_least=item.at_least))
+                text = Said("set-up line" if item.line else "set-up", job=job.name, line=item.line, text=item.text)
+                self._found.append(Verdict(item.severity, text, item.kind, amount=item.amount, at_least=item.at_least))
         return checked.simulation
 
     def findings(self, made: First) -> list[Verdict]:
         """What was found, less what the set-ups' own jobs accept, and which of them were not played. Lines, moves,
         operations and places are of another program than the job's: the text has the lines."""
-        return self._found + [Verdict("note", f"set-up {job.name!r}: its outcome is that of {path}; its moves are not "
-                                      "checked here", "uncut") for job, path in made.kept]
+        return self._found + [Verdict("note", Said("set-up kept", job=job.name, path=path), "uncut")
+                              for job, path in made.kept]
 
 
-def _check_findings(job: Job, checked: Check, voxel: float) -> list[Verdict]:
+def check_text(found: CheckFinding, job: Job, clearance: float) -> str:
+    """What is said of one, in words that can be translated."""
+    keys = {"fixture": f"fixture {found.part}", "design": f"design {found.part}",
+            "spindle": "spindle stopped" if found.severity == "error" else "spindle backwards",
+            "tool": "tool blunt" if found.tool in job.tools else "tool missing"}
+    key = keys.get(found.kind, found.kind)
+    if key not in FORMS:  # of what is not asked for here: travel, plunges
+        return found.text
+    return Said(key, depth=found.depth, clearance=clearance, tool=found.tool)
+
+
+def uncut_text(found: Finding, job: Job) -> Said:
+    """What is said of moves that were not simulated, in words that can be translated."""
     names = job.program.operations
-    return [Verdict(found.severity, found.text, found.kind,
+    return Said(f"uncut {found.kind}", operation=names[found.operation] if 0 <= found.operation < len(names) else "",
+                tool=found.tool, axis=found.axis, value=found.value)
+
+
+def _check_findings(job: Job, checked: Check, voxel: float, clearance: float) -> list[Verdict]:
+    names = job.program.operations
+    return [Verdict(found.severity, check_text(found, job, clearance), found.kind,
                     names[found.operation] if 0 <= found.operation < len(names) else None, found.line, found.move,
                     found.tip, amount=found.depth, t=found.t,
                     at_least=found.depth > 2.99 * voxel)  # of a contact no more than three voxels are told
@@ -238,7 +267,7 @@ def _check_findings(job: Job, checked: Check, voxel: float) -> list[Verdict]:
 def _uncut_findings(job: Job, checked: Check) -> list[Verdict]:
     """What the simulation says of moves that cut nothing, less what the checks tell as well (missing tools)."""
     told = {found.operation for found in checked.findings if found.kind == "tool"}
-    return [Verdict(found.severity, found.text, "uncut", *operation_of(job, found.move), found.move)
+    return [Verdict(found.severity, uncut_text(found, job), "uncut", *operation_of(job, found.move), found.move)
             for found in checked.simulation.findings if found.operation not in told]
 
 
@@ -265,17 +294,39 @@ def loose_findings(job: Job, left: Stock, first: Stock, progress: Report = None)
 
 def _design_findings(solid: Solid, first: Stock, mesh: Mesh) -> list[Verdict]:
     found = []
-    doubt = compare_place(first, solid)
-    if doubt:
-        found.append(Verdict("warning", doubt, "design"))
+    kind, value, factor, _ = compare_place(first, solid)
+    if kind:
+        found.append(Verdict("warning", place_text(kind, value, factor, first, mesh), "design"))
     if solid.open_edges or solid.turned_edges:
-        found.append(Verdict("warning", f"the design is not closed: {solid.open_edges} open edges, {solid.turned_edges} "
-                             f"between triangles turned different ways; the holes have at most {solid.hole_mm2:.3g} mm2 "
-                             "and inside is told by the winding number", "design"))
+        found.append(Verdict("warning", Said("design open", open=solid.open_edges, turned=solid.turned_edges,
+                                             hole=solid.hole_mm2), "design"))
     if solid.crossing_triangles:
-        found.append(Verdict("note", f"{solid.crossing_triangles} of the design's {mesh.triangle_count} triangles cross "
-                             "or touch others; it is taken as the union of what they enclose", "design"))
+        found.append(Verdict("note", Said("design crossing", crossing=solid.crossing_triangles,
+                                          all=mesh.triangle_count), "design"))
     return found
+
+
+#: What compare_place() tells of units: how many times as large, and its words.
+_UNITS = ((25.4, "inch in mm"), (1 / 25.4, "mm in inch"), (10.0, "cm in mm"), (0.1, "mm in cm"), (1000.0, "m in mm"),
+          (0.001, "mm in m"))
+
+
+def place_text(kind: str, value: float, factor: float, first: Stock, mesh: Mesh) -> Said:
+    """What is said of a design that can hardly belong to a stock."""
+    if kind == "unit":
+        units = min(_UNITS, key=lambda unit: abs(unit[0] - factor))[1]
+        return Said("place unit", value=value, units=Said(units))
+    if kind == "beside":
+        boxes = [Said("box", **dict(zip("abcdef", [x for corner in box or ((0.0,) * 3,) * 2 for x in corner])))
+                 for box in (mesh.bounding_box, first.bounding_box())]
+        return Said("place beside", design=boxes[0], stock=boxes[1])
+    return Said(f"place {kind}", value=value)
+
+
+def solids_of(meshes: Sequence[Mesh], progress: Report = None) -> list[Solid]:
+    """Solids of meshes, fixtures. Cancelled, what Solid() raises."""
+    return [Solid(mesh, progress=share(progress, number / len(meshes), (number + 1) / len(meshes)))
+            for number, mesh in enumerate(meshes)]
 
 
 def fixture_findings(first: Stock, solids: Sequence[Solid]) -> list[Verdict]:
@@ -284,25 +335,23 @@ def fixture_findings(first: Stock, solids: Sequence[Solid]) -> list[Verdict]:
     for number, solid in enumerate(solids, 1):
         depth, place = compare_overlap(first, solid)
         if depth > 0.35 * first.voxel:
-            found.append(Verdict("warning", f"fixture {number} reaches into the stock before anything is cut, at least "
-                                 f"{depth:.3g} mm deep: fixture or stock are not where they should be", "fixture",
-                                 place=place, amount=depth, at_least=True))
+            found.append(Verdict("warning", Said("fixture inside", number=number, depth=depth), "fixture", place=place,
+                                 amount=depth, at_least=True))
     return found
 
 
-def _cluster_finding(job: Job, cluster: Cluster, complete: bool) -> Verdict:
-    operation, line = operation_of(job, cluster.moves[0]) if cluster.moves else (None, 0)
-    least = "at least " if cluster.at_least else ""
-    amount = f"{least}{abs(cluster.value):.3f} mm, {cluster.area:.4g} mm2, {cluster.volume:.4g} mm3"
+def _cluster_finding(made: Verification, cluster: Cluster) -> Verdict:
+    operation, line = operation_of(made.result.job, cluster.moves[0]) if cluster.moves else (None, 0)
+    amount = Said("amount at least" if cluster.at_least else "amount", value=abs(cluster.value), area=cluster.area,
+                  volume=cluster.volume)
+    severity, key = "error", cluster.kind
     if cluster.kind == "gouge":
-        severity, text = "error", f"gouge: {amount} missing"
-        if not cluster.moves:
-            text += "; no move made it: the stock is too small here"
+        key = "gouge" if cluster.moves else "gouge of no move"
     elif cluster.kind == "excess":
-        severity, text = "error", f"material left: {amount}"
-        if cluster.moves and cluster.away >= 0.001:
-            text += f"; the nearest cut stays {cluster.away:.3f} mm away"
-    else:
-        severity, text = "error" if complete else "warning", f"not reached: {amount} left where no move went"
-    return Verdict(severity, text, cluster.kind, operation, line, cluster.moves[0] if cluster.moves else -1,
-                   cluster.place, cluster, cluster.value, at_least=bool(cluster.at_least))
+        key = "excess away" if cluster.moves and cluster.away >= 0.001 else "excess"
+    elif not made.complete:
+        severity = "warning"
+    return Verdict(severity, Said(key, amount=amount, away=cluster.away), cluster.kind, operation, line,
+                   cluster.moves[0] if cluster.moves else -1, cluster.place, cluster, cluster.value,
+                   at_least=bool(cluster.at_least), tolerance=made.tolerance[cluster.kind == "gouge"],
+                   allowance=made.allowance)

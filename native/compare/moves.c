@@ -124,39 +124,56 @@ static const struct {
 } units[] = {{25.4, "mm instead of inches"}, {1 / 25.4, "inches instead of mm"}, {10, "mm instead of cm"},
              {0.1, "cm instead of mm"},      {1000, "mm instead of m"},          {0.001, "m instead of mm"}};
 
-swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, char *text, size_t size)
+const char *swarf_place_name(swarf_place_kind kind)
 {
-    SWARF_REQUIRE(stock && design && text && size > 0, "compare: stock, design or text missing");
+    static const char *const names[SWARF_PLACE_COUNT] = {"", "unit", "empty", "beside", "out"};
+    return (unsigned)kind < SWARF_PLACE_COUNT ? names[kind] : "";
+}
+
+swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, swarf_place *out)
+{
+    SWARF_REQUIRE(stock && design && out, "compare: stock, design or output missing");
     swarf_box own;
     SWARF_TRY(swarf_stock_box(stock, &own));
     const swarf_box other = swarf_solid_get_facts(design).box;
-    double edge = 0, design_edge = 0, out = 0;
+    double edge = 0, design_edge = 0, beyond = 0;
     int overlap = 1;
     for (int k = 0; k < 3; k++) {
         edge = fmax(edge, own.hi[k] - own.lo[k]);
         design_edge = fmax(design_edge, other.hi[k] - other.lo[k]);
-        out = fmax(out, fmax(own.lo[k] - other.lo[k], other.hi[k] - own.hi[k]));
+        beyond = fmax(beyond, fmax(own.lo[k] - other.lo[k], other.hi[k] - own.hi[k]));
         overlap &= own.lo[k] < other.hi[k] && other.lo[k] < own.hi[k];
     }
-    text[0] = 0;
+    swarf_place place = {.kind = SWARF_PLACE_WELL};
     const double ratio = edge > 0 ? design_edge / edge : 1;
-    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++)
-        if (ratio > 0.55 * units[i].factor && ratio < 1.2 * units[i].factor && fabs(log(units[i].factor)) > 2) {
-            snprintf(text, size, "the design is %.4g times as large as the stock: is it in %s?", ratio, units[i].text);
-            return SWARF_OK;
-        }
-    if (!(edge > 0))
-        snprintf(text, size, "nothing is left of the stock");
-    else if (!overlap)
-        snprintf(text, size,
+    const size_t size = sizeof place.text, unit_count = sizeof units / sizeof units[0];
+    size_t unit = 0;
+    while (unit < unit_count && !(ratio > 0.55 * units[unit].factor && ratio < 1.2 * units[unit].factor &&
+                                  fabs(log(units[unit].factor)) > 2))
+        unit++;
+    if (unit < unit_count) {
+        place.kind = SWARF_PLACE_UNIT;
+        place.value = ratio;
+        place.factor = units[unit].factor;
+        snprintf(place.text, size, "the design is %.4g times as large as the stock: is it in %s?", ratio,
+                 units[unit].text);
+    } else if (!(edge > 0)) {
+        place.kind = SWARF_PLACE_EMPTY;
+        snprintf(place.text, size, "nothing is left of the stock");
+    } else if (!overlap) {
+        place.kind = SWARF_PLACE_BESIDE;
+        snprintf(place.text, size,
                  "the design (%.6g, %.6g, %.6g .. %.6g, %.6g, %.6g mm) lies beside the stock (%.6g, %.6g, "
                  "%.6g .. %.6g, %.6g, %.6g mm): is it in another place?",
                  other.lo[0], other.lo[1], other.lo[2], other.hi[0], other.hi[1], other.hi[2], own.lo[0], own.lo[1],
                  own.lo[2], own.hi[0], own.hi[1], own.hi[2]);
-    else if (out > 0.1 * edge)
-        snprintf(text, size,
-                 "the design reaches %.4g mm out of what is left of the stock: is it in the same place and "
-                 "unit?",
-                 out);
+    } else if (beyond > 0.1 * edge) {
+        place.kind = SWARF_PLACE_OUT;
+        place.value = beyond;
+        snprintf(place.text, size,
+                 "the design reaches %.4g mm out of what is left of the stock: is it in the same place and unit?",
+                 beyond);
+    }
+    *out = place;
     return SWARF_OK;
 }

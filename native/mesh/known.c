@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* A hash table with open addressing over the places of facets' corners; a facet that comes back with other corners
- * first is another one, which only costs time. */
+/* A hash table with open addressing over the places of facets' corners. Facets are known by these places alone, not by
+ * the numbers of their vertices: two that shared a vertex, and have now two vertices at that place, are still taken for
+ * facets that do not cut each other. One that comes back with its corners in another order is another one, which only
+ * costs time. */
 #include "mesh/known.h"
 
 #include "base/parallel.h"

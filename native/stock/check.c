@@ -194,7 +194,10 @@ static void describe(const struct player *p, const struct test *test, swarf_chec
     case SWARF_CHECK_NEAR:
         snprintf(f->text, size, "holder closer to the stock than %g mm", p->options->clearance_mm);
         break;
-    case SWARF_CHECK_FIXTURE: snprintf(f->text, size, "%s hits a fixture, %.3g mm deep", what, f->depth_mm); break;
+    case SWARF_CHECK_FIXTURE:
+        snprintf(f->text, size, "%s %s a fixture, %.3g mm deep", what, test->part == SWARF_PART_FLUTES ? "hit" : "hits",
+                 f->depth_mm);
+        break;
     case SWARF_CHECK_DESIGN:
         snprintf(f->text, size,
                  test->part == SWARF_PART_FLUTES ? "%s cut into the design, %.3g mm deep"

@@ -83,8 +83,14 @@ const swarf_finding *swarf_simulation_findings(const swarf_simulation *simulatio
     return simulation ? simulation->findings : NULL;
 }
 
+const char *swarf_finding_name(swarf_finding_kind kind)
+{
+    static const char *const names[SWARF_FINDING_COUNT] = {"no tool", "unknown tool", "no flutes", "axis", "idle"};
+    return (unsigned)kind < SWARF_FINDING_COUNT ? names[kind] : "";
+}
+
 /* A finding at a move, its text still to be written. */
-static swarf_status add_finding(struct player *player, swarf_severity severity, size_t move, swarf_finding **out)
+static swarf_status add_finding(struct player *player, swarf_finding_kind kind, size_t move, swarf_finding **out)
 {
     swarf_simulation *result = player->result;
     const swarf_move *at = &swarf_program_moves(player->program)[move];
@@ -92,20 +98,25 @@ static swarf_status add_finding(struct player *player, swarf_severity severity, 
     SWARF_TRY(swarf_array_reserve((void **)&result->findings, &result->finding_room, result->finding_count + 1,
                                   sizeof *result->findings));
     *out = &result->findings[result->finding_count++];
-    **out = (swarf_finding){
-        .severity = severity, .operation = section->operation, .move = move, .line = at->line, .tool = section->tool};
+    **out = (swarf_finding){.severity = kind == SWARF_FINDING_IDLE ? SWARF_NOTE : SWARF_ERROR,
+                            .kind = (int32_t)kind,
+                            .operation = section->operation,
+                            .move = move,
+                            .line = at->line,
+                            .tool = section->tool};
     return SWARF_OK;
 }
 
 /* An error at a move; NULL in *out when the operation has one for this tool already. */
-static swarf_status add_error(struct player *player, size_t move, const swarf_section *section, swarf_finding **out)
+static swarf_status add_error(struct player *player, swarf_finding_kind kind, size_t move, const swarf_section *section,
+                              swarf_finding **out)
 {
     const swarf_simulation *result = player->result;
     *out = NULL;
     for (size_t i = 0; i < result->finding_count; i++)
         if (result->findings[i].tool == section->tool && result->findings[i].operation == section->operation)
             return SWARF_OK;
-    return add_finding(player, SWARF_ERROR, move, out);
+    return add_finding(player, kind, move, out);
 }
 
 static const char *operation_of(const struct player *player, const swarf_section *section)
@@ -115,10 +126,11 @@ static const char *operation_of(const struct player *player, const swarf_section
                : "";
 }
 
-static swarf_status report_tool(struct player *player, size_t move, const swarf_section *section, const char *what)
+static swarf_status report_tool(struct player *player, size_t move, const swarf_section *section,
+                                swarf_finding_kind kind)
 {
     swarf_finding *finding;
-    SWARF_TRY(add_error(player, move, section, &finding));
+    SWARF_TRY(add_error(player, section->tool < 0 ? SWARF_FINDING_NO_TOOL : kind, move, section, &finding));
     if (!finding) return SWARF_OK;
     const char *operation = operation_of(player, section);
     if (section->tool < 0)
@@ -126,7 +138,7 @@ static swarf_status report_tool(struct player *player, size_t move, const swarf_
                  "operation '%.80s' moves before any tool is loaded; nothing was cut", operation);
     else
         snprintf(finding->text, sizeof finding->text, "operation '%.80s': tool T%d %s; nothing was cut", operation,
-                 (int)section->tool, what);
+                 (int)section->tool, kind == SWARF_FINDING_NO_FLUTES ? "has no flutes" : "is not in the tool table");
     return SWARF_OK;
 }
 
@@ -137,10 +149,12 @@ static swarf_status check_axes(struct player *player, size_t move, const swarf_s
     *turned = swarf_program_move_axes(player->program, move, from, to);
     if (!*turned) return SWARF_OK;
     swarf_finding *finding;
-    SWARF_TRY(add_error(player, move, section, &finding));
+    SWARF_TRY(add_error(player, SWARF_FINDING_AXIS, move, section, &finding));
     if (!finding) return SWARF_OK;
     int axis = 0;
     while (axis < 5 && from[axis] == 0.0 && to[axis] == 0.0) axis++;
+    finding->axis = axis;
+    finding->value = to[axis];
     snprintf(finding->text, sizeof finding->text,
              "operation '%.80s': axis %c moves to %.6g; turned and shifted poses are not simulated, they cut nothing",
              operation_of(player, section), "ABCUVW"[axis], to[axis]);
@@ -156,11 +170,11 @@ static swarf_status find_body(struct player *player, size_t move, const swarf_se
         if (!player->bodies[i])
             SWARF_TRY(swarf_body_create(player->tools[i].cutter, SWARF_PART_FLUTES, swarf_stock_voxel(player->stock),
                                         &player->bodies[i]));
-        if (player->bodies[i]->component_count == 0) return report_tool(player, move, section, "has no flutes");
+        if (player->bodies[i]->component_count == 0) return report_tool(player, move, section, SWARF_FINDING_NO_FLUTES);
         *out = player->bodies[i];
         return SWARF_OK;
     }
-    return report_tool(player, move, section, "is not in the tool table");
+    return report_tool(player, move, section, SWARF_FINDING_UNKNOWN_TOOL);
 }
 
 /* Cut moves first .. end - 1, which share a tool. */
@@ -205,7 +219,7 @@ static swarf_status report_idle(struct player *player)
     for (size_t i = 0; i < result->operation_count; i++) {
         if (player->cuts[i] == 0 || result->removed[i] > least) continue;
         swarf_finding *finding;
-        SWARF_TRY(add_finding(player, SWARF_NOTE, player->cuts[i] - 1, &finding));
+        SWARF_TRY(add_finding(player, SWARF_FINDING_IDLE, player->cuts[i] - 1, &finding));
         snprintf(finding->text, sizeof finding->text,
                  "operation '%.80s' removes nothing: its moves do not meet what is left of the stock",
                  swarf_program_operation_name(player->program, i));

@@ -176,6 +176,9 @@ def test_an_acceptance_knows_its_finding_and_no_worse_one(swarf):
         if "most" in entry:
             worse = SimpleNamespace(**dict(vars(verdict), amount=1.2 * verdict.amount))
             assert not known.knows(worse)
+        if verdict.kind in findings.DEVIATIONS:
+            other = SimpleNamespace(**dict(vars(verdict), allowance=0.1))
+            assert not known.knows(other), "over an allowance it is another finding"
     gouge = next(item for item in outcome.verdicts if item.kind == "gouge")
     entries = native.to_accepted("Job", [findings.acceptance(gouge, "meant so", 0.5)])
     settled = checks.accept(outcome, entries)

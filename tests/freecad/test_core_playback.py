@@ -5,8 +5,10 @@ import itertools
 import math
 import os
 import random
+import string
 import subprocess
 import sys
+import xml.etree.ElementTree
 import threading
 
 import pytest
@@ -550,6 +552,21 @@ def test_translations_are_complete():
     assert done.returncode == 0, done.stdout.decode()
     folder = os.path.join(ADDON, "freecad", "swarf_cam", "translations")
     assert {os.path.splitext(name)[0] for name in os.listdir(folder) if name.endswith(".qm")} == {"swarf_de"}
+
+
+def test_translations_have_the_same_values():
+    """A translation that names a value that is none would fail when it is shown; one that leaves it out says less."""
+    def values(text):
+        return sorted((name, spec) for _, name, spec, _ in string.Formatter().parse(text) if name is not None)
+
+    file = xml.etree.ElementTree.parse(os.path.join(ADDON, "freecad", "swarf_cam", "translations", "swarf_de.ts"))
+    told = 0
+    for context in file.getroot().iter("context"):
+        for message in context.iter("message"):
+            source, translation = message.findtext("source"), message.findtext("translation")
+            told += context.findtext("name") == "SwarfFinding"
+            assert set(values(source)) == set(values(translation)), source
+    assert told > 70
 
 
 def test_the_section_takes_away_the_side_in_front():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Loads of moves, limits for them, and findings that are accepted: Python and command line."""
+import dataclasses
 import json
 import math
 import subprocess
@@ -123,6 +124,26 @@ def test_what_is_only_known_to_be_as_much_is_not_accepted_as_no_more():
     assert not acceptance.knows(finding)
 
 
+def test_a_deviation_is_accepted_as_it_was_looked_at():
+    """Over another allowance another thing is measured; a tighter tolerance asks anew, a coarser one asks for less."""
+    found = Verdict("error", "material left", "excess", amount=0.3, tolerance=0.05, allowance=0.0)
+    entry = accept.make({"reason": "x", "kind": "excess", "tolerance": 0.05, "allowance": 0}, "here")
+    assert entry.knows(found) and entry.knows(dataclasses.replace(found, tolerance=0.1))
+    for other in ({"allowance": 0.2}, {"tolerance": 0.02}, {"allowance": None}):
+        assert not entry.knows(dataclasses.replace(found, **other)), other
+    assert accept.make({"reason": "x", "kind": "excess"}, "here").knows(dataclasses.replace(found, allowance=0.2))
+    job = faced(1.0, 0.2)
+    done = swarf.verify(job, DESIGN, voxel=0.5, allowance=0.1)
+    (gouge,) = [item for item in done.findings if item.kind == "gouge"]
+    assert gouge.allowance == 0.1 and gouge.tolerance == 0.05
+    entry = accept.make({"reason": "x", "kind": "gouge", "allowance": 0.1, "tolerance": 0.05}, "here")
+    assert dataclasses.replace(done).judge(0.06, accept=[entry]).passed
+    (idle,) = [item for item in dataclasses.replace(done, allowance=0.0).judge(0.05, accept=[entry]).findings
+               if item.kind == "acceptance"]
+    assert idle.text == ("nothing is found now of what is accepted, with a tolerance of 0.05 mm and an allowance of 0.1 "
+                         "mm, because 'x'")
+
+
 def test_acceptances_that_cannot_be(tmp_path):
     path = tmp_path / "accept.json"
     for text, word in (("{}", "list"), ("[", "JSON"), ('[{"kind": "gouge"}]', "reason"), ('[{"reason": " "}]', "reason"),
@@ -130,6 +151,8 @@ def test_acceptances_that_cannot_be(tmp_path):
                        ('[{"reason": "x", "line": "3"}]', "line"), ('[{"reason": "x", "place": [1, 2]}]', "place"),
                        ('[{"reason": "x", "text": ""}]', "text"), ('[{"reason": "x", "place": null}]', "place"),
                        ('[{"reason": "x", "line": 1, "most": 1%s}]' % (400 * "0"), "most"), (3000 * "[", "JSON"),
+                       ('[{"reason": "x", "line": 1, "tolerance": 0}]', "tolerance"),
+                       ('[{"reason": "x", "line": 1, "allowance": "0"}]', "allowance"),
                        ('[{"reason": "x", "kind": 3}]', "kind"), ('[{"reason": "x", "line": 1, "most": -1}]', "most")):
         path.write_text(text)
         with pytest.raises(ValueError, match=word) as raised:

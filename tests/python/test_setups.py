@@ -251,7 +251,7 @@ def test_earlier_set_ups_are_checked_with_their_own_fixtures(tmp_path):
     done = swarf.verify(bottom, voxel=VOXEL, tolerance=0.3)
     hits = [found for found in done.findings if found.kind == "fixture"]
     assert hits and not done.passed and all(found.text.startswith("set-up 'top', line ") for found in hits)
-    assert "line 5: flutes hits a fixture, at least" in hits[0].text or "line 5: flutes hits a fixture, " in hits[0].text
+    assert "line 5: flutes hit a fixture, at least" in hits[0].text or "line 5: flutes hit a fixture, " in hits[0].text
     assert hits[0].line == 0 and hits[0].place is None and hits[0].severity == "error"
     # the holder of the first set-up is its own, too
     top.fixtures, top.tools = [], {1: swarf.Cutter("flat:d=6,l=2,sd=6,sl=1,hd=20,hl=20")}

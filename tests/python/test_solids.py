@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """STEP files: faces as they were cut where these are known, else facets, and the reason."""
 import json
+import os
 import random
 import re
 
@@ -104,6 +105,22 @@ def test_meshes_and_too_many(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(solids, "FACETS_MAX", 3)
     assert main(words) == 2 and "too many for facets" in capsys.readouterr().err
     assert not (tmp_path / "part.step").exists()
+
+
+def test_writing_can_be_cancelled_at_any_time(tmp_path):
+    """The old file stays, nothing is left beside it; once the new one is there it is too late."""
+    path = tmp_path / "part.step"
+    path.write_text("old")
+    mesh = swarf.Mesh.from_stock(swarf.Stock.box((0, 0, 0), (6, 5, 4), voxel=0.5))
+    told = []
+    solids.write_facets(mesh, str(tmp_path / "other.step"), "no", told.append)
+    (tmp_path / "other.step").unlink()
+    writing = [done for done in told if 0.7 <= done < 1.0]
+    assert told == sorted(told) and len(writing) >= 3, "vertices, edges and faces of the file"
+    for limit in writing:
+        with pytest.raises(swarf.Cancelled):
+            solids.write_facets(mesh, str(path), "no", lambda done, limit=limit: done >= limit)
+        assert path.read_text() == "old" and os.listdir(tmp_path) == ["part.step"]
 
 
 def test_solids_that_touch_along_an_edge():

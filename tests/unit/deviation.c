@@ -274,17 +274,18 @@ static void check_place(void)
     shape_box(&small, (const double[3]){0, 0, -10 / 25.4}, (const double[3]){inch[0], inch[1], 0});
     const swarf_triangles triangles[2] = {shape_view(&beside), shape_view(&small)};
     milled j = milled_begin("flat:d=4,l=20", 0.5);
-    char text[256];
+    swarf_place place;
     for (int i = 0; i < 2; i++) {
         swarf_solid *design = NULL;
         CHECK_OK(swarf_solid_create(&triangles[i], NULL, &design));
-        CHECK_OK(swarf_compare_place(j.stock, design, text, sizeof text));
-        CHECK(strstr(text, i ? "inches" : "beside") != NULL);
+        CHECK_OK(swarf_compare_place(j.stock, design, &place));
+        CHECK(strstr(place.text, i ? "inches" : "beside") != NULL);
+        CHECK(strcmp(swarf_place_name((swarf_place_kind)place.kind), i ? "unit" : "beside") == 0);
         swarf_solid_release(design);
     }
     swarf_solid *right = design_of(4, 8);
-    CHECK_OK(swarf_compare_place(j.stock, right, text, sizeof text));
-    CHECK(text[0] == 0);
+    CHECK_OK(swarf_compare_place(j.stock, right, &place));
+    CHECK(place.kind == SWARF_PLACE_WELL && place.text[0] == 0);
     swarf_deviation_options options = swarf_deviation_options_default();
     swarf_deviation *deviation = NULL;
     options.gouge_mm = 0;

@@ -64,20 +64,20 @@ def _doubt(text):
 
 def _check(job, voxel_mm, doubts, report, stop, clearance_mm):
     """Outcome without a design, and whether the program was played to its end."""
-    swarf = native.load()
+    native.load()
     from swarf.stocks import make_first
-    from swarf.verify import SetUps, findings_of, fixture_findings, loose_findings, settle
+    from swarf.verify import SetUps, findings_of, fixture_findings, loose_findings, settle, solids_of
 
     earlier = SetUps(clearance_mm)
     made = make_first(job.stock, voxel=voxel_mm, play=earlier.play, progress=lambda done: report("stock", done))
     stock = made.stock
     first = stock.copy() if not stop or job.design is None else None  # else swarf.verify() follows, and looks itself
-    clamps = [swarf.Solid(fixture) for fixture in job.fixtures]
+    clamps = solids_of(job.fixtures, lambda done: report("design", done))
     doubts += earlier.findings(made) + fixture_findings(stock, clamps)
     checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=clearance_mm, teeth=job.teeth, stop=stop,
                           progress=lambda done: report("cut", done))
     ended = not (stop and any(item.severity == "error" for item in checked.findings))
-    found = findings_of(job, checked, voxel_mm)
+    found = findings_of(job, checked, voxel_mm, clearance_mm)
     if ended and first is not None:
         found += loose_findings(job, stock, first, lambda done: report("loose", done))
     verdicts = settle(doubts + found, job.accepted)

@@ -153,7 +153,7 @@ def to_job(data):
 @dataclass
 class Result:
     """What a simulation came to; volumes in mm3. stock_file and mesh_file lie in the folder that was given.
-    excess and gouge are None without a design; colours: (r, g, b), 0 .. 1, of each triangle of the mesh, by
+    excess and gouge are None without a design; findings: arguments of app.wording.line(); colours: (r, g, b), 0 .. 1, of each triangle of the mesh, by
     operation."""
 
     stock_file: str
@@ -187,11 +187,16 @@ STAGES = {"stock": (0.0, 0.1), "cut": (0.1, 0.4), "loose": (0.5, 0.05), "mesh": 
           "write": (0.85, 0.05), "colours": (0.9, 0.1)}
 
 
-def _lines(findings, operations, begin=""):
-    """What a swarf.Simulation noticed, a line of text each."""
-    return ["%s: %soperation '%s', command %d: %s" % (
-        item.severity, begin, operations[item.operation] if 0 <= item.operation < len(operations) else "-", item.line,
-        item.text) for item in findings]
+def text_of(item, job):
+    """What a swarf.Finding of a swarf.Job says, in words that can be translated."""
+    return importlib.import_module(load().__name__ + ".verify").uncut_text(item, job)
+
+
+def _findings(job, found):
+    """Findings of the swarf.Simulation of a swarf.Job: (severity, operation, line, text)."""
+    names = job.program.operations
+    return [(item.severity, names[item.operation] if 0 <= item.operation < len(names) else None, item.line,
+             text_of(item, job)) for item in found]
 
 
 def simulate(data, voxel_mm, folder, progress=None):
@@ -212,11 +217,9 @@ def simulate(data, voxel_mm, folder, progress=None):
     outcome, comparison = done.simulation, done.comparison
     names = data.moves.operations
     # a set-up before that was kept says nothing here: its own simulation has said it
-    findings = [line for job, played in done.before
-                for line in _lines(played.findings, job.program.operations, "job '%s', " % job.name)]
-    findings += _lines(outcome.findings, names)
-    findings += ["warning: operation '%s', command %d: %s" % (piece.operation or "-", piece.line, piece.text)
-                 for piece in done.loose.pieces]
+    findings = [(*line, job.name) for job, played in done.before for line in _findings(job, played.findings)]
+    findings += [(*line, None) for line in _findings(done.job, outcome.findings)]
+    findings += [("warning", piece.operation, piece.line, piece.text, None) for piece in done.loose.pieces]
     tints = importlib.import_module(swarf.__name__ + ".colours").make(
         "operation", done.mesh, done.surface, done.job,
         progress=(lambda fraction: report("colours", fraction)) if progress else None)
@@ -227,6 +230,11 @@ def simulate(data, voxel_mm, folder, progress=None):
         comparison.gouge_mm3 if comparison else None, findings,
         sum(item.severity == "error" for played in (*(played for _, played in done.before), outcome)
             for item in played.findings), done.seconds["total"], [parts[tint] for tint in tints])
+
+
+def said(key, **values):
+    """A sentence of swarf.wording."""
+    return importlib.import_module(load().__name__ + ".wording").Said(key, **values)
 
 
 # Error of a mesh where nobody says, in voxels: swarf.simulate's own.
@@ -269,8 +277,8 @@ def export_analytic(data, stock_file, path, largest=False, progress=None):
     """Write what is left of a JobData's stock as a STEP file of analytic faces -> Analytic, without a file where the stock
     is not bounded by such faces alone. Raises and the rest as export()."""
     swarf = load()
-    brep, step, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))
-                                 for name in ("brep", "step", "parts", "progress"))
+    brep, step, solids, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))
+                                         for name in ("brep", "step", "solids", "parts", "progress"))
     share = functools.partial(shares.share, progress)
     _, left, surface = _exact(data, stock_file, share(0, 0.4))
     error = SOLID_ERROR_VOXELS * left.voxel
@@ -280,15 +288,14 @@ def export_analytic(data, stock_file, path, largest=False, progress=None):
     if largest:
         mesh = parts.largest(mesh)
     if mesh.triangle_count > SOLID_TRIANGLES_MAX:
-        return Analytic(None, "its mesh has %d triangles, and faces are told of %d at most"
-                        % (mesh.triangle_count, SOLID_TRIANGLES_MAX))
+        return Analytic(None, said("too many triangles", triangles=mesh.triangle_count, most=SOLID_TRIANGLES_MAX))
     try:
-        made = brep.make(mesh, surface, left.voxel, progress=share(0.7, 1))
+        made = brep.make(mesh, surface, left.voxel, progress=share(0.7, 0.9))
     except brep.NotAnalytic as problem:
-        return Analytic(problem.share, str(problem))
+        return Analytic(problem.share, problem.said)
     except ValueError as problem:  # a piece that is no closed mesh: facets show what there is
-        return Analytic(None, str(problem))
-    step.write(made, path)
+        return Analytic(None, solids.why(problem))
+    step.write(made, path, progress=share(0.9, 1))
     return Analytic(1.0, None, mesh.volume, mesh.area, error, len(made.faces))
 
 

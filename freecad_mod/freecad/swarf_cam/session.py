@@ -34,8 +34,8 @@ PROBE_REACH, PROBE_VOXEL = 0.35, 0.1
 # Stock in the colours of its deviation: as light as the colours of the legend want it, linear.
 TINTED_MATERIAL = (0.8, 0.8, 0.8)
 
-# Making the stock takes about this part of opening; the rest is cutting it once.
-OPEN_SHARE = 0.3
+# Until when, about, opening makes the stock, and until when it cuts it once; the rest is finding the exact surface.
+OPEN_SHARE, SURFACE_SHARE = 0.3, 0.9
 
 
 # What of stock and design a picture shows.
@@ -122,13 +122,14 @@ class Session:
         from swarf.stocks import make_first, stock_box  # of the package, once it is known to be there
 
         self.box = tuple(tuple(float(value) for value in corner) for corner in stock_box(self.job.stock))
-        first = make_first(self.job.stock, voxel=voxel_mm, progress=lambda done: progress(OPEN_SHARE * done))
+        share = self._share(progress)
+        first = make_first(self.job.stock, voxel=voxel_mm, progress=share(0, OPEN_SHARE))
         stock = first.stock
         self.clock = Clock(data.moves)
         self.listing = Listing(data.moves, data.operations)
         self._keywords = known_keywords()
         self._swarf = swarf
-        self.overview = self._look_ahead(stock, lambda done: progress(OPEN_SHARE + (1 - OPEN_SHARE) * done))
+        self.overview = self._look_ahead(stock, share(OPEN_SHARE, SURFACE_SHARE))
         self.tool_changes = [float(index) for index in range(len(data.moves)) if self._is_tool_change(index)]
         self.stops = {STOP_OPERATION: [float(begin) for begin in self.listing.operation_begin[1:]],
                       STOP_TOOL_CHANGE: self.tool_changes,
@@ -138,11 +139,16 @@ class Session:
         self._stock, self._scene = stock, swarf.Scene(stock)
         self._exact = hasattr(swarf.Scene, "show_surface")  # the native module can show more than the voxels
         if self._exact:
-            self._scene.show_surface(first.surface(self.program, self.tools))
+            self._scene.show_surface(first.surface(self.program, self.tools, progress=share(SURFACE_SHARE, 1)))
         if hasattr(swarf.Scene, "set_fixtures"):
             self._scene.set_fixtures(self.job.fixtures)
         limit = int(HISTORY_SHARE * native.estimate(*self.box, voxel_mm))
         self._playback = Playback(swarf.History(stock, self.program, self.tools, memory_limit=limit))
+
+    @staticmethod
+    def _share(progress):
+        """(begin, end) -> the progress of this part of the whole."""
+        return lambda begin, end: lambda done: progress(begin + (end - begin) * done)
 
     def _is_tool_change(self, index):
         row = self.data.moves.row(index)
@@ -155,7 +161,7 @@ class Session:
         for item in done.findings:
             if (item.operation, item.text) not in seen:
                 seen.add((item.operation, item.text))
-                findings.append((float(max(item.move, 0)), item.severity, item.text))
+                findings.append((float(max(item.move, 0)), item.severity, native.text_of(item, self.job)))
         return Overview(list(done.removed_by_operation), done.volume_initial, done.volume_final, findings)
 
     def step(self, place, seconds, progress=None):

@@ -109,9 +109,25 @@ SWARF_API swarf_status swarf_deviation_find_moves(swarf_deviation *deviation, co
                                                   const swarf_tool *tools, size_t tool_count,
                                                   const swarf_progress *progress);
 
-/** Text on a design that can hardly belong to a stock: beside it, larger than it, or in another unit; "" when all looks
- *  well. `size` bytes at most. */
-SWARF_API swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, char *text, size_t size);
+typedef enum swarf_place_kind {
+    SWARF_PLACE_WELL = 0, /**< all looks well */
+    SWARF_PLACE_UNIT,     /**< `value` times as large as the stock, as in the wrong one of two units `factor` apart */
+    SWARF_PLACE_EMPTY,    /**< nothing is left of the stock */
+    SWARF_PLACE_BESIDE,   /**< their boxes do not touch */
+    SWARF_PLACE_OUT,      /**< reaches `value` mm out of the stock */
+    SWARF_PLACE_COUNT
+} swarf_place_kind;
+
+typedef struct swarf_place {
+    int32_t kind; /**< swarf_place_kind */
+    double value, factor;
+    char text[320]; /**< for people; "" when all looks well */
+} swarf_place;
+
+/** Whether a design can hardly belong to a stock: beside it, larger than it, or in another unit. */
+SWARF_API swarf_status swarf_compare_place(swarf_stock *stock, const swarf_solid *design, swarf_place *out);
+/** "", "unit", "empty", "beside", "out". */
+SWARF_API const char *swarf_place_name(swarf_place_kind kind);
 
 /** How deep (mm) a solid - a fixture - reaches into a stock, and a voxel's centre where; no more than six voxels are
  *  told. Where faces meet it is good to a hundredth of a voxel; beside edges distances run short, so that up to 0.35

@@ -83,9 +83,21 @@ SWARF_API swarf_status swarf_stock_boolean(swarf_stock *stock, swarf_stock *othe
 /** How bad a finding is. */
 typedef enum swarf_severity { SWARF_NOTE = 0, SWARF_WARNING = 1, SWARF_ERROR = 2 } swarf_severity;
 
+typedef enum swarf_finding_kind {
+    SWARF_FINDING_NO_TOOL = 0,  /**< moves before any tool is loaded */
+    SWARF_FINDING_UNKNOWN_TOOL, /**< the tool is not in the table */
+    SWARF_FINDING_NO_FLUTES,    /**< the tool cannot cut */
+    SWARF_FINDING_AXIS,         /**< a turned or shifted pose */
+    SWARF_FINDING_IDLE,         /**< an operation that removes nothing */
+    SWARF_FINDING_COUNT
+} swarf_finding_kind;
+
 /** Something the simulation noticed. */
 typedef struct swarf_finding {
     int32_t severity;
+    int32_t kind; /**< swarf_finding_kind */
+    int32_t axis; /**< of SWARF_FINDING_AXIS: 0..5, A, B, C, U, V, W */
+    double value; /**< where that axis goes, degrees or mm */
     int32_t operation;
     size_t move;
     uint32_t line;
@@ -125,6 +137,8 @@ SWARF_API const double *swarf_simulation_removed(const swarf_simulation *simulat
 SWARF_API const double *swarf_simulation_removed_per_move(const swarf_simulation *simulation, size_t *count);
 SWARF_API double swarf_simulation_volume_initial(const swarf_simulation *simulation);
 SWARF_API double swarf_simulation_volume_final(const swarf_simulation *simulation);
+/** "no tool", "unknown tool" ... */
+SWARF_API const char *swarf_finding_name(swarf_finding_kind kind);
 SWARF_API const swarf_finding *swarf_simulation_findings(const swarf_simulation *simulation, size_t *count);
 
 #ifdef __cplusplus

@@ -15,7 +15,7 @@ from .. import native
 from ..core import steps
 from ..core.errors import JobError
 from . import job as jobs
-from . import setups
+from . import setups, wording
 
 translate = FreeCAD.Qt.translate
 
@@ -135,7 +135,7 @@ class Export:
                 ).format(self.analytic.faces))
                 return shape
             self._run_facets()  # a rare one, and known only here
-        share, reason = self.analytic.share, self.analytic.reason
+        share, reason = self.analytic.share, wording.say(self.analytic.reason)
         if share is None or share >= 1:
             FreeCAD.Console.PrintWarning(translate("Swarf", "Swarf: the shape is made of flat facets: {0}\n").format(reason))
         else:
@@ -148,10 +148,10 @@ class Export:
 def _doubt(shape, analytic):
     """What is wrong with a shape made of analytic faces; None when nothing is."""
     if not shape.Solids or not all(solid.isValid() and solid.isClosed() for solid in shape.Solids):
-        return "FreeCAD finds the solid not valid"
+        return native.said("solid unsound")
     off = abs(sum(solid.Volume for solid in shape.Solids) - analytic.volume_mm3)
     if off > analytic.error_mm * analytic.area_mm2:
-        return "its volume is off by %.3g mm3" % off
+        return native.said("volume off", off=off)
     return None
 
 

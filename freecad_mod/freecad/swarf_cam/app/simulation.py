@@ -17,7 +17,7 @@ from .. import native
 from ..core import steps
 from ..core.errors import JobError
 from . import job as jobs
-from . import setups
+from . import setups, wording
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -268,7 +268,7 @@ def store(obj, prepared, result):
     obj.Gouge = result.gouge or 0.0
     obj.Operations = result.operations
     obj.RemovedByOperation = result.removed
-    obj.Findings = prepared.data.notes + result.findings
+    obj.Findings = prepared.data.notes + [wording.line(*finding) for finding in result.findings]
     obj.Errors = result.errors
     obj.Moves = result.moves
     obj.Seconds = result.seconds

@@ -43,15 +43,15 @@ def _of_move(move, listing):
     return {"line": listing.line_of(move), "operation": listing.operation_at(move)} if move >= 0 else {}
 
 
-def from_overview(found, listing):
-    """Findings of (place, severity, text), as session.Overview has them."""
-    return sorted((Finding(severity, text, "uncut", place, **_of_move(int(place), listing))
+def from_overview(found, listing, say=str):
+    """Findings of (place, severity, text), as session.Overview has them. say: a text as people are to read it."""
+    return sorted((Finding(severity, say(text), "uncut", place, **_of_move(int(place), listing))
                    for place, severity, text in found), key=_order)
 
 
-def from_verdicts(verdicts, listing):
+def from_verdicts(verdicts, listing, say=str):
     """Findings of swarf.verify()'s Verdicts: contacts where the tool stands at them, gouges when they are made, what
-    is left at the end. What is accepted is a note."""
+    is left at the end. What is accepted is a note. say: a text as people are to read it."""
     result = []
     for verdict in verdicts:
         place = None
@@ -60,7 +60,7 @@ def from_verdicts(verdicts, listing):
         elif verdict.move >= 0:
             place = verdict.move + (1.0 if verdict.kind == MADE_BY_MOVE else verdict.t)
         severity = "note" if verdict.accepted is not None else verdict.severity
-        result.append(Finding(severity, verdict.text, verdict.kind, place, point=verdict.place,
+        result.append(Finding(severity, say(verdict.text), verdict.kind, place, point=verdict.place,
                               amount=verdict.amount or 0.0, accepted=verdict.accepted, verdict=verdict,
                               **_of_move(verdict.move, listing)))
     return sorted(result, key=_order)
@@ -68,7 +68,7 @@ def from_verdicts(verdicts, listing):
 
 def acceptance(verdict, reason, voxel_mm):
     """The entry of swarf.accept that knows this swarf Verdict, and no worse one: what lies within some voxels of it and
-    is at most a tenth greater."""
+    is at most a tenth greater; of a deviation, over the same allowance and beyond no tighter tolerance."""
     entry = {"reason": reason, "kind": verdict.kind}
     if verdict.operation is not None:
         entry["operation"] = verdict.operation
@@ -79,8 +79,10 @@ def acceptance(verdict, reason, voxel_mm):
         entry["within"] = round(max(WITHIN_MM, WITHIN_VOXELS * voxel_mm), 4)
     if verdict.amount is not None and not verdict.at_least:
         entry["most"] = math.ceil(1.1e4 * abs(verdict.amount)) / 1e4
+    entry.update((name, getattr(verdict, name)) for name in ("tolerance", "allowance")
+                 if getattr(verdict, name) is not None)
     if not set(entry) & {"operation", "line", "place"}:
-        entry["text"] = verdict.text
+        entry["text"] = str(verdict.text)
     return entry
 
 

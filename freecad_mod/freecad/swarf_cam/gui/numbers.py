@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Numbers for people, written as the user's locale has them: as FreeCAD's spin boxes show what they hold. G-code, files
-and what the native module says keep the decimal point."""
+and errors of the native module keep the decimal point."""
 
+from ..app import wording
 from .qt import QtCore
+
+
+def _point():
+    return str(QtCore.QLocale().decimalPoint())
 
 
 def _pointed(digits):
     """Digits with the locale's point. PySide2's toString() would keep seven of them only."""
-    return digits.replace(".", str(QtCore.QLocale().decimalPoint()))
+    return digits.replace(".", _point())
 
 
 def text(value, decimals, signed=False):
@@ -36,3 +41,8 @@ def size(count_of_bytes):
     if count_of_bytes >= 1e9:
         return text(count_of_bytes / 1e9, 1) + " GB"
     return text(count_of_bytes / 1e6, 0 if count_of_bytes >= 1e7 else 2) + " MB"
+
+
+def in_words(finding):
+    """A text of swarf's about a finding in the user's language, its numbers as all others."""
+    return wording.say(finding, _point())

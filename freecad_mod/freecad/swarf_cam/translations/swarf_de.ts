@@ -911,6 +911,10 @@
             <translation>nach Wandstärke</translation>
         </message>
         <message>
+            <source>error</source>
+            <translation>Fehler</translation>
+        </message>
+        <message>
             <source>leave loose pieces out</source>
             <translation>lose Stücke weglassen</translation>
         </message>
@@ -925,6 +929,10 @@
         <message>
             <source>none</source>
             <translation>keine</translation>
+        </message>
+        <message>
+            <source>note</source>
+            <translation>Hinweis</translation>
         </message>
         <message>
             <source>passed</source>
@@ -951,6 +959,10 @@
             <translation>gewendet um {0}</translation>
         </message>
         <message>
+            <source>warning</source>
+            <translation>Warnung</translation>
+        </message>
+        <message>
             <source>what is left by '{0}'</source>
             <translation>was „{0}“ übrig lässt</translation>
         </message>
@@ -961,6 +973,325 @@
         <message>
             <source>{0} voxels along the longest edge, up to {1}</source>
             <translation>{0} Voxel entlang der längsten Kante, bis zu {1}</translation>
+        </message>
+        <message>
+            <source>{severity}: job '{job}', operation '{operation}', command {number}: {text}</source>
+            <translation>{severity}: Auftrag „{job}“, Operation „{operation}“, Befehl {number}: {text}</translation>
+        </message>
+        <message>
+            <source>{severity}: operation '{operation}', command {number}: {text}</source>
+            <translation>{severity}: Operation „{operation}“, Befehl {number}: {text}</translation>
+        </message>
+    </context>
+    <context>
+        <name>SwarfFinding</name>
+        <message>
+            <source>FreeCAD finds the solid not valid</source>
+            <translation>FreeCAD hält den Körper für ungültig</translation>
+        </message>
+        <message>
+            <source>a corner is not found near ({x:.3f}, {y:.3f}, {z:.3f})</source>
+            <translation>eine Ecke ist nahe bei ({x:.3f}; {y:.3f}; {z:.3f}) nicht zu finden</translation>
+        </message>
+        <message>
+            <source>a face that is a point</source>
+            <translation>eine Fläche, die ein Punkt ist</translation>
+        </message>
+        <message>
+            <source>a face without any edge</source>
+            <translation>eine Fläche ohne Kante</translation>
+        </message>
+        <message>
+            <source>a feed move without feed</source>
+            <translation>eine Vorschubbewegung ohne Vorschub</translation>
+        </message>
+        <message>
+            <source>a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; it was before the program began</source>
+            <translation>ein Stück von {volume:.4g} mm3 bei {x:.4g}; {y:.4g}; {z:.4g} ist lose; es war es schon vor dem Programm</translation>
+        </message>
+        <message>
+            <source>a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; this move frees it</source>
+            <translation>ein Stück von {volume:.4g} mm3 bei {x:.4g}; {y:.4g}; {z:.4g} ist lose; diese Bewegung trennt es ab</translation>
+        </message>
+        <message>
+            <source>a solid is made of a closed mesh</source>
+            <translation>ein Körper wird aus einem geschlossenen Netz gemacht</translation>
+        </message>
+        <message>
+            <source>a tolerance of {tolerance:g} mm</source>
+            <translation>einer Toleranz von {tolerance:g} mm</translation>
+        </message>
+        <message>
+            <source>a tolerance of {tolerance:g} mm and an allowance of {allowance:g} mm</source>
+            <translation>einer Toleranz von {tolerance:g} mm und einem Aufmaß von {allowance:g} mm</translation>
+        </message>
+        <message>
+            <source>an allowance of {allowance:g} mm</source>
+            <translation>einem Aufmaß von {allowance:g} mm</translation>
+        </message>
+        <message>
+            <source>an edge has no face on one side</source>
+            <translation>eine Kante hat auf einer Seite keine Fläche</translation>
+        </message>
+        <message>
+            <source>an edge is no smooth curve near ({x:.3f}, {y:.3f}, {z:.3f})</source>
+            <translation>eine Kante ist nahe bei ({x:.3f}; {y:.3f}; {z:.3f}) keine glatte Kurve</translation>
+        </message>
+        <message>
+            <source>an edge is not found near ({x:.3f}, {y:.3f}, {z:.3f})</source>
+            <translation>eine Kante ist nahe bei ({x:.3f}; {y:.3f}; {z:.3f}) nicht zu finden</translation>
+        </message>
+        <message>
+            <source>an edge is used twice</source>
+            <translation>eine Kante wird zweimal verwendet</translation>
+        </message>
+        <message>
+            <source>at least {value:.3f} mm, {area:.4g} mm2, {volume:.4g} mm3</source>
+            <translation>mindestens {value:.3f} mm, {area:.4g} mm2, {volume:.4g} mm3</translation>
+        </message>
+        <message>
+            <source>axial depth</source>
+            <translation>Schnitttiefe</translation>
+        </message>
+        <message>
+            <source>chip thickness</source>
+            <translation>Spanungsdicke</translation>
+        </message>
+        <message>
+            <source>cm instead of mm</source>
+            <translation>cm statt mm</translation>
+        </message>
+        <message>
+            <source>cuts deeper than the flutes are long</source>
+            <translation>schneidet tiefer, als die Schneiden lang sind</translation>
+        </message>
+        <message>
+            <source>cuts with the spindle stopped</source>
+            <translation>schneidet bei stehender Spindel</translation>
+        </message>
+        <message>
+            <source>cuts with the spindle turning backwards (M4)</source>
+            <translation>schneidet mit rückwärts drehender Spindel (M4)</translation>
+        </message>
+        <message>
+            <source>engagement</source>
+            <translation>Eingriff</translation>
+        </message>
+        <message>
+            <source>fixture {number} reaches into the stock before anything is cut, at least {depth:.3g} mm deep: fixture or stock are not where they should be</source>
+            <translation>Spannmittel {number} ragt in das Rohteil, bevor etwas geschnitten ist, mindestens {depth:.3g} mm tief: Spannmittel oder Rohteil sind nicht, wo sie sein sollten</translation>
+        </message>
+        <message>
+            <source>flutes cut into the design, {depth:.3g} mm deep</source>
+            <translation>die Schneiden schneiden in das Modell, {depth:.3g} mm tief</translation>
+        </message>
+        <message>
+            <source>flutes hit a fixture, {depth:.3g} mm deep</source>
+            <translation>die Schneiden treffen ein Spannmittel, {depth:.3g} mm tief</translation>
+        </message>
+        <message>
+            <source>gouge: {amount} missing</source>
+            <translation>zu tief: {amount} fehlen</translation>
+        </message>
+        <message>
+            <source>gouge: {amount} missing; no move made it: the stock is too small here</source>
+            <translation>zu tief: {amount} fehlen; keine Bewegung war es: das Rohteil ist hier zu klein</translation>
+        </message>
+        <message>
+            <source>holder closer to the stock than {clearance:g} mm</source>
+            <translation>Halter näher am Rohteil als {clearance:g} mm</translation>
+        </message>
+        <message>
+            <source>holder hits a fixture, {depth:.3g} mm deep</source>
+            <translation>der Halter trifft ein Spannmittel, {depth:.3g} mm tief</translation>
+        </message>
+        <message>
+            <source>holder hits the design, {depth:.3g} mm deep</source>
+            <translation>der Halter trifft das Modell, {depth:.3g} mm tief</translation>
+        </message>
+        <message>
+            <source>holder hits the stock, {depth:.3g} mm deep</source>
+            <translation>der Halter trifft das Rohteil, {depth:.3g} mm tief</translation>
+        </message>
+        <message>
+            <source>inches instead of mm</source>
+            <translation>Zoll statt mm</translation>
+        </message>
+        <message>
+            <source>it has faces of more than {most} shapes</source>
+            <translation>es hat Flächen von mehr als {most} Formen</translation>
+        </message>
+        <message>
+            <source>its faces do not hang together</source>
+            <translation>seine Flächen hängen nicht zusammen</translation>
+        </message>
+        <message>
+            <source>its mesh has {triangles} triangles, and faces are told of {most} at most</source>
+            <translation>sein Netz hat {triangles} Dreiecke, und Flächen werden von höchstens {most} erkannt</translation>
+        </message>
+        <message>
+            <source>its volume is off by {off:.3g} mm3</source>
+            <translation>sein Volumen weicht um {off:.3g} mm3 ab</translation>
+        </message>
+        <message>
+            <source>m instead of mm</source>
+            <translation>m statt mm</translation>
+        </message>
+        <message>
+            <source>material left: {amount}</source>
+            <translation>Material übrig: {amount}</translation>
+        </message>
+        <message>
+            <source>material left: {amount}; the nearest cut stays {away:.3f} mm away</source>
+            <translation>Material übrig: {amount}; der nächste Schnitt bleibt {away:.3f} mm entfernt</translation>
+        </message>
+        <message>
+            <source>mm instead of cm</source>
+            <translation>mm statt cm</translation>
+        </message>
+        <message>
+            <source>mm instead of inches</source>
+            <translation>mm statt Zoll</translation>
+        </message>
+        <message>
+            <source>mm instead of m</source>
+            <translation>mm statt m</translation>
+        </message>
+        <message>
+            <source>not reached: {amount} left where no move went</source>
+            <translation>nicht erreicht: {amount} übrig, wo keine Bewegung hinkam</translation>
+        </message>
+        <message>
+            <source>nothing is found any more of what is accepted because '{reason}'</source>
+            <translation>nichts wird mehr gefunden von dem, was angenommen ist, weil „{reason}“</translation>
+        </message>
+        <message>
+            <source>nothing is found now of what is accepted, with {circumstances}, because '{reason}'</source>
+            <translation>nichts wird jetzt gefunden von dem, was mit {circumstances} angenommen ist, weil „{reason}“</translation>
+        </message>
+        <message>
+            <source>nothing is left of the stock</source>
+            <translation>vom Rohteil ist nichts übrig</translation>
+        </message>
+        <message>
+            <source>operation '{operation}' moves before any tool is loaded; nothing was cut</source>
+            <translation>Operation „{operation}“ fährt, bevor ein Werkzeug geladen ist; nichts wurde geschnitten</translation>
+        </message>
+        <message>
+            <source>operation '{operation}' removes nothing: its moves do not meet what is left of the stock</source>
+            <translation>Operation „{operation}“ trägt nichts ab: ihre Bewegungen treffen nicht, was vom Rohteil übrig ist</translation>
+        </message>
+        <message>
+            <source>operation '{operation}': axis {axis} moves to {value:.6g}; turned and shifted poses are not simulated, they cut nothing</source>
+            <translation>Operation „{operation}“: Achse {axis} fährt nach {value:.6g}; gedrehte und verschobene Lagen werden nicht simuliert, sie schneiden nichts</translation>
+        </message>
+        <message>
+            <source>operation '{operation}': tool T{tool} has no flutes; nothing was cut</source>
+            <translation>Operation „{operation}“: das Werkzeug T{tool} hat keine Schneiden; nichts wurde geschnitten</translation>
+        </message>
+        <message>
+            <source>operation '{operation}': tool T{tool} is not in the tool table; nothing was cut</source>
+            <translation>Operation „{operation}“: das Werkzeug T{tool} ist nicht in der Werkzeugtabelle; nichts wurde geschnitten</translation>
+        </message>
+        <message>
+            <source>radial width</source>
+            <translation>Schnittbreite</translation>
+        </message>
+        <message>
+            <source>rapid through material, {depth:.3g} mm deep</source>
+            <translation>Eilgang durch Material, {depth:.3g} mm tief</translation>
+        </message>
+        <message>
+            <source>removal rate</source>
+            <translation>Zeitspanvolumen</translation>
+        </message>
+        <message>
+            <source>set-up '{job}', line {line}: {text}</source>
+            <translation>Aufspannung „{job}“, Zeile {line}: {text}</translation>
+        </message>
+        <message>
+            <source>set-up '{job}': its outcome is that of {path}; its moves are not checked here</source>
+            <translation>Aufspannung „{job}“: ihr Ergebnis ist das von {path}; ihre Bewegungen werden hier nicht geprüft</translation>
+        </message>
+        <message>
+            <source>set-up '{job}': {text}</source>
+            <translation>Aufspannung „{job}“: {text}</translation>
+        </message>
+        <message>
+            <source>shank hits a fixture, {depth:.3g} mm deep</source>
+            <translation>der Schaft trifft ein Spannmittel, {depth:.3g} mm tief</translation>
+        </message>
+        <message>
+            <source>shank hits the design, {depth:.3g} mm deep</source>
+            <translation>der Schaft trifft das Modell, {depth:.3g} mm tief</translation>
+        </message>
+        <message>
+            <source>shank hits the stock, {depth:.3g} mm deep</source>
+            <translation>der Schaft trifft das Rohteil, {depth:.3g} mm tief</translation>
+        </message>
+        <message>
+            <source>the design ({design}) lies beside the stock ({stock}): is it in another place?</source>
+            <translation>das Modell ({design}) liegt neben dem Rohteil ({stock}): liegt es an anderer Stelle?</translation>
+        </message>
+        <message>
+            <source>the design is not closed: {open} open edges, {turned} between triangles turned different ways; the holes have at most {hole:.3g} mm2 and inside is told by the winding number</source>
+            <translation>das Modell ist nicht geschlossen: {open} offene Kanten, {turned} zwischen verschieden gewendeten Dreiecken; die Löcher haben höchstens {hole:.3g} mm2, und innen ist, was die Windungszahl so nennt</translation>
+        </message>
+        <message>
+            <source>the design is {value:.4g} times as large as the stock: is it in {units}?</source>
+            <translation>das Modell ist {value:.4g}-mal so groß wie das Rohteil: ist es in {units}?</translation>
+        </message>
+        <message>
+            <source>the design reaches {value:.4g} mm out of what is left of the stock: is it in the same place and unit?</source>
+            <translation>das Modell ragt {value:.4g} mm aus dem heraus, was vom Rohteil übrig ist: liegt es an derselben Stelle, in derselben Einheit?</translation>
+        </message>
+        <message>
+            <source>the edges of a face do not close</source>
+            <translation>die Kanten einer Fläche schließen sich nicht</translation>
+        </message>
+        <message>
+            <source>the tool starts inside the stock</source>
+            <translation>das Werkzeug beginnt im Rohteil</translation>
+        </message>
+        <message>
+            <source>there is a hollow inside</source>
+            <translation>innen ist ein Hohlraum</translation>
+        </message>
+        <message>
+            <source>tool T{tool} has no flutes</source>
+            <translation>das Werkzeug T{tool} hat keine Schneiden</translation>
+        </message>
+        <message>
+            <source>tool T{tool} is not in the tool table</source>
+            <translation>das Werkzeug T{tool} ist nicht in der Werkzeugtabelle</translation>
+        </message>
+        <message>
+            <source>two faces touch along a curve that is no line and no circle</source>
+            <translation>zwei Flächen berühren sich entlang einer Kurve, die weder Gerade noch Kreis ist</translation>
+        </message>
+        <message>
+            <source>{a:.6g}, {b:.6g}, {c:.6g} .. {d:.6g}, {e:.6g}, {f:.6g} mm</source>
+            <translation>{a:.6g}; {b:.6g}; {c:.6g} .. {d:.6g}; {e:.6g}; {f:.6g} mm</translation>
+        </message>
+        <message>
+            <source>{crossing} of the design's {all} triangles cross or touch others; it is taken as the union of what they enclose</source>
+            <translation>{crossing} der {all} Dreiecke des Modells schneiden oder berühren andere; es gilt als Vereinigung dessen, was sie umschließen</translation>
+        </message>
+        <message>
+            <source>{load} {value:.4g} {unit} exceeds the limit of {most:g} {unit}</source>
+            <translation>{load} {value:.4g} {unit}, mehr als die Grenze von {most:g} {unit}</translation>
+        </message>
+        <message>
+            <source>{load} {value:.4g} {unit} exceeds the limit of {most:g} {unit}; {count} moves exceed it, this one most</source>
+            <translation>{load} {value:.4g} {unit}, mehr als die Grenze von {most:g} {unit}; {count} Bewegungen überschreiten sie, diese am meisten</translation>
+        </message>
+        <message>
+            <source>{percent:.1f} % of the surface is on planes, cylinders, cones, spheres and tori, but not what is near ({x:.2f}, {y:.2f}, {z:.2f})</source>
+            <translation>{percent:.1f} % der Oberfläche sind Ebenen, Zylinder, Kegel, Kugeln und Tori, nicht aber, was nahe bei ({x:.2f}; {y:.2f}; {z:.2f}) ist</translation>
+        </message>
+        <message>
+            <source>{value:.3f} mm, {area:.4g} mm2, {volume:.4g} mm3</source>
+            <translation>{value:.3f} mm, {area:.4g} mm2, {volume:.4g} mm3</translation>
         </message>
     </context>
     <context>

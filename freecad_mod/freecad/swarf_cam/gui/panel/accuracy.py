@@ -4,6 +4,7 @@
 import FreeCAD
 
 from ... import native
+from ...app import wording
 from .. import numbers
 from ..qt import QtCore, QtWidgets
 
@@ -56,7 +57,8 @@ class Accuracy(QtWidgets.QWidget):
         overview = session.overview
         lines = [translate("Swarf", "Stock {0} cm³, removed {1} cm³, left {2} cm³").format(*(numbers.text(volume / 1000, 2) for volume in (
             overview.volume_initial, overview.volume_initial - overview.volume_final, overview.volume_final)))]
-        lines += ["%s: %s" % (severity, text) for _, severity, text in overview.findings]
+        lines += ["%s: %s" % (translate("Swarf", wording.SEVERITIES[severity]), numbers.in_words(text))
+                  for _, severity, text in overview.findings]
         lines += list(session.data.notes)
         self.outcome.setText("\n".join(lines))
         self._show_estimate()

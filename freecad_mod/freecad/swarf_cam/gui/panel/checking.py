@@ -62,7 +62,7 @@ class Checking:
     def open(self, session):
         """A job was opened: what its simulation noticed; the rest follows."""
         self._panel.findings.show_checked("")
-        self._show(model.from_overview(session.overview.findings, session.listing))
+        self._show(model.from_overview(session.overview.findings, session.listing, numbers.in_words))
         if settings.flag("AutoCheck"):
             self._first.start()
 
@@ -188,7 +188,7 @@ class Checking:
                 self.outcome = checks.accept(self.outcome, native.to_accepted(panel.job.Label, entries))
         except JobError as error:
             panel.fail(error)
-        self._show(model.from_verdicts(self.outcome.verdicts, panel.session.listing))
+        self._show(model.from_verdicts(self.outcome.verdicts, panel.session.listing, numbers.in_words))
         panel.deviation.show_outcome(self.outcome)
 
     def accept(self, finding, reason):

@@ -9,7 +9,7 @@ import FreeCAD
 import FreeCADGui as Gui
 
 from ... import native, session as sessions
-from .. import colours, settings
+from .. import colours, numbers, settings
 from ..qt import QtCore, QtWidgets
 from .accuracy import Accuracy
 from .banner import Banner
@@ -213,7 +213,7 @@ class LivePanel(QtWidgets.QDockWidget):
             self.player.toggle()
         errors = [text for _, severity, text in session.overview.findings if severity == "error"]
         if errors:
-            self.banner.say("error", errors[0])
+            self.banner.say("error", numbers.in_words(errors[0]))
         self.show_state()
         self.wish()
 

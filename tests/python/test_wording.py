@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is said of findings: the library's own words, and the same in another language."""
+import copy
+import pickle
+import string
+
+import swarf
+from swarf import wording
+from swarf.job import Job
+from swarf.verify import check_text, place_text, uncut_text
+
+PLATE = ((0.0, 0.0, -10.0), (60.0, 40.0, 0.0))
+
+def wrong():
+    """A program that does about all that it must not."""
+    program = swarf.Program(start=(5, 5, -1))
+    program.add_operation("all wrong")
+    for tool, spindle, points in (
+            (1, "off", [("rapid", (20, 5, -1)), ("rapid", (22, 5, -1)), ("feed", (20, 5, -8)), ("feed", (30, 5, -8))]),
+            (1, "ccw", [("feed", (30, 5, -25))]), (9, "cw", [("feed", (40, 5, -25))]), (3, "cw", [("feed", (41, 5, 5))]),
+            (2, "cw", [("rapid", (70, 5, 5)), ("rapid", (70, 5, -19)), ("feed", (56, 5, -19)), ("feed", (56, 5, -30)),
+                       ("feed", (10, 5, -30))])):
+        program.set_section(tool=tool, spindle=spindle, spindle_rpm=100)
+        for kind, point in points:
+            program.add_line(point, kind=kind, feed_mm_min=0.0 if point[2] == -8 else 100.0)
+    return program
+
+
+def cube(lo, hi):
+    return swarf.Mesh.from_stock(swarf.Stock.box(lo, hi, 1.0))
+
+
+def job_of(program):
+    part = [(0, 0), (3, 0), (3, 4), (0, 4)]
+    tools = {1: swarf.Cutter("flat:d=6,l=6"), 2: swarf.Cutter.from_parts([
+        ("flutes", [(0, 0, 0), (3, 0, 0), (3, 6, 0), (0, 6, 0)]), ("shank", [(0, 6, 0), (4, 6, 0), (4, 20, 0), (0, 20, 0)]),
+        ("holder", [(0, 20, 0), (9, 20, 0), (9, 40, 0), (0, 40, 0)])]),
+        3: swarf.Cutter.from_parts([("shank", [(r, z, 0) for r, z in part])])}
+    return Job("job", program, tools)
+
+
+def test_checks_are_told_in_the_librarys_own_words():
+    job = job_of(wrong())
+    stock = swarf.Stock.box(*PLATE, 0.5)
+    clamp, design = swarf.Solid(cube((8, 2, -12), (30, 8, 30))), swarf.Solid(cube((0, 0, -10), (60, 40, -2)))
+    checked = stock.check(job.program, job.tools, fixtures=[clamp], design=design, clearance=1.5)
+    told = {}
+    for found in checked.findings:
+        text = check_text(found, job, 1.5)
+        assert text == found.text and isinstance(text, wording.Said)
+        told[text.key] = text
+    assert {"start", "rapid", "shank", "holder", "depth", "spindle stopped", "spindle backwards", "feed", "tool missing",
+            "tool blunt", "fixture flutes", "fixture shank", "fixture holder", "design flutes",
+            "near"} <= set(told), sorted(told)
+    assert all(uncut_text(found, job) == found.text for found in checked.simulation.findings)
+    assert {found.kind for found in checked.simulation.findings} == {"unknown tool", "no flutes"}
+
+
+def test_moves_that_are_not_simulated_are_told_in_the_librarys_own_words():
+    bare = swarf.Program(start=(0, 0, 0))
+    bare.add_operation("bare")
+    bare.add_line((1, 0, 0), feed_mm_min=100)
+    turned, away = (swarf.Program.parse_gcode("G21 G90\nT1 M6\n" + text, start=(0, 0, 5)) for text in (
+        "G1 X5 A30 F9\n", "G0 X-50\nG1 X-60 F9\n"))
+    for program, kinds in ((bare, {"no tool"}), (turned, {"axis"}), (away, {"idle"})):
+        job = job_of(program)
+        found = swarf.Stock.box(*PLATE, 1.0).simulate(job.program, job.tools).findings
+        assert {item.kind for item in found} == kinds
+        assert [uncut_text(item, job) for item in found] == [item.text for item in found]
+
+
+def test_places_of_designs_are_told_in_the_librarys_own_words():
+    first = swarf.Stock.box(*PLATE, 1.0)
+    for lo, hi, key in (((100, 0, -10), (160, 40, 0), "beside"), ((0, 0, -10), (60, 40, 20), "out"),
+                        ((0, 0, -10), (1524, 1016, 254), "unit")):
+        mesh = swarf.Mesh.from_stock(swarf.Stock.box(lo, hi, max(hi) / 30))
+        kind, value, factor, text = swarf.compare_place(first, swarf.Solid(mesh))
+        assert kind == key and place_text(kind, value, factor, first, mesh) == text
+
+
+def test_another_language_has_the_same_values():
+    german = {"excess": "Material übrig: {amount}", "amount": "{value:.3f} mm, {area:.4g} mm2 ({volume:.4g} mm3)"}
+    forms = {wording.FORMS[key]: text for key, text in german.items()}
+    amount = wording.Said("amount", value=0.125, area=12.5, volume=3.0)
+    said = wording.Said("excess", amount=amount)
+    assert said == "material left: 0.125 mm, 12.5 mm2, 3 mm3"
+    assert said.translated(forms.get, ",") == "Material übrig: 0,125 mm, 12,5 mm2 (3 mm3)"
+    for copied in (copy.deepcopy(said), pickle.loads(pickle.dumps(said))):
+        assert copied == said and (copied.key, copied.values) == (said.key, said.values)
+    assert wording.Said("set-up", job="{x}", text=said).translated(lambda form: form) == f"set-up '{{x}}': {said}"
+
+
+def test_no_two_sentences_are_one():
+    assert len(set(wording.FORMS.values())) == len(wording.FORMS)
+    for form in wording.FORMS.values():
+        assert all(name is None or name.isidentifier() for _, name, _, _ in string.Formatter().parse(form)), form
