@@ -3,10 +3,6 @@
  *
  * A line is as dark as there is room for it: where lines crowd, as on the steps of a relief, each is lighter, and the
  * faces between them are what is seen. So every square knows how many lines there are about it.
- *
- *   edge      per square: how much of an edge its middle is on, 0 .. 255
- *   outline   per square: of what stands high before what is behind, 0 .. 255; these lines are dark in any case
- *   room      per square: how dark the others may be there, 0 .. 255
  */
 #include "render/edges.h"
 
@@ -16,12 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* An edge is drawn from 18 degrees on, in full from 40: the facets that a tool leaves on curved surfaces are not. */
-static const float edge_cosine_least = 0.951f, edge_cosine_full = 0.766f;
-/* One thing hides another when it stands this many squares before it: from, and in full. */
-static const float step_least = 0.9f, step_full = 2.0f;
-/* From this height on, in squares, the line is the outline of a part and not of one of many steps. */
-static const float outline_least = 5, outline_full = 15;
 static const float edge_colour[3] = {0.012f, 0.015f, 0.022f};
 static const float edge_strength = 0.8f;
 
@@ -30,47 +20,6 @@ static const float edge_strength = 0.8f;
 enum { WINDOWS = 45 };
 /* Lines across a window that keep their strength; and what a line keeps at least, so that an engraving still shows. */
 static const float lines_calm = 1.8f, room_least = 0.2f;
-
-static float smooth_step(float from, float to, float x)
-{
-    const float part = (x - from) / (to - from), t = part > 0 ? (part < 1 ? part : 1) : 0;
-    return t * t * (3 - 2 * t);
-}
-
-float swarf_edge_crease(const swarf_sight *a, const swarf_sight *b)
-{
-    if (a->seen == SWARF_SEEN_NOTHING || a->seen != b->seen) return 0;
-    float cosine = 0;
-    for (int axis = 0; axis < 3; axis++) cosine += a->normal[axis] * b->normal[axis];
-    return cosine < edge_cosine_least ? smooth_step(edge_cosine_least, edge_cosine_full, cosine) : 0;
-}
-
-float swarf_edge_beyond(float crease, const swarf_sight *before, const swarf_sight *beyond)
-{
-    if (!before || !beyond || before->seen != beyond->seen) return crease;
-    return fminf(crease, swarf_edge_crease(before, beyond));
-}
-
-/* The face of `b` tells. That of `a` does not: where a rounding turns away from the eye, all that it hides lies close
- * to the plane of its last sights. */
-float swarf_edge_height(const swarf_look *look, const swarf_sight *a, const swarf_sight *b)
-{
-    if (a->seen == SWARF_SEEN_NOTHING || a->distance > b->distance) return 0;
-    if (a->seen != b->seen) return INFINITY;
-    float off = 0;
-    for (int axis = 0; axis < 3; axis++) off += (a->point[axis] - b->point[axis]) * b->normal[axis];
-    return fabsf(off) / (float)swarf_look_footprint(look, a);
-}
-
-float swarf_edge_step(float height)
-{
-    return smooth_step(step_least, step_full, height);
-}
-
-float swarf_edge_outline(float height)
-{
-    return smooth_step(outline_least, outline_full, height);
-}
 
 void swarf_edge_draw(float colour[4], float strength)
 {
@@ -94,19 +43,21 @@ static swarf_status mark_row(void *context, size_t row)
     const int32_t y = (int32_t)row;
     for (int32_t x = 0; x < c->width; x++) {
         const swarf_sight *own = middle_at(c, x, y);
+        const float footprint = (float)swarf_look_footprint(&c->look, own);
         float edge = 0, height = 0;
         for (int step = 0; step < 4; step++) {
             const int32_t dx = steps[step][0], dy = steps[step][1];
             const swarf_sight *other = middle_at(c, x + dx, y + dy);
             if (!other) continue;
-            height = fmaxf(height, swarf_edge_height(&c->look, own, other));
+            height = fmaxf(height, swarf_edge_height(footprint, own, other));
             const float crease = step < 2 ? swarf_edge_crease(own, other) : 0;
             if (crease > edge)
                 edge = fmaxf(edge, swarf_edge_beyond(crease, middle_at(c, x - dx, y - dy),
                                                      middle_at(c, x + 2 * dx, y + 2 * dy)));
         }
-        c->edge[swarf_canvas_at(c, x, y)] = (uint8_t)(255 * fmaxf(edge, swarf_edge_step(height)) + 0.5f);
-        c->outline[swarf_canvas_at(c, x, y)] = (uint8_t)(255 * swarf_edge_outline(height) + 0.5f);
+        swarf_line_mark *const mark = &c->mark[swarf_canvas_at(c, x, y)];
+        mark->edge = (uint8_t)(255 * fmaxf(edge, swarf_edge_step(height)) + 0.5f);
+        mark->outline = (uint8_t)(255 * swarf_edge_outline(height) + 0.5f);
     }
     return SWARF_OK;
 }
@@ -121,13 +72,13 @@ static swarf_status count_across(void *context, size_t row)
 {
     const struct counting *counting = context;
     const int32_t width = counting->canvas->width, reach = counting->reach;
-    const uint8_t *edge = counting->canvas->edge + row * (size_t)width;
+    const swarf_line_mark *mark = counting->canvas->mark + row * (size_t)width;
     uint32_t *out = counting->across + row * (size_t)width, sum = 0;
-    for (int32_t x = 0; x < reach && x < width; x++) sum += edge[x];
+    for (int32_t x = 0; x < reach && x < width; x++) sum += mark[x].edge;
     for (int32_t x = 0; x < width; x++) {
-        if (x + reach < width) sum += edge[x + reach];
+        if (x + reach < width) sum += mark[x + reach].edge;
         out[x] = sum;
-        if (x >= reach) sum -= edge[x - reach];
+        if (x >= reach) sum -= mark[x - reach].edge;
     }
     return SWARF_OK;
 }
@@ -141,12 +92,12 @@ static swarf_status find_room(void *context, size_t row)
     const int32_t y = (int32_t)row, reach = counting->reach;
     const int32_t top = y > reach ? y - reach : 0, end = y + reach < c->height ? y + reach + 1 : c->height;
     const float calm = lines_calm * 255 * (float)(2 * reach + 1);
-    uint8_t *room = c->room + row * width;
+    swarf_line_mark *mark = c->mark + row * width;
     for (size_t x = 0; x < width; x++) {
         uint32_t sum = 0;
         for (int32_t j = top; j < end; j++) sum += counting->across[(size_t)j * width + x];
         const float part = (float)sum > calm ? calm / (float)sum : 1;
-        room[x] = (uint8_t)(255 * fmaxf(part * part, room_least) + 0.5f);
+        mark[x].room = (uint8_t)(255 * fmaxf(part * part, room_least) + 0.5f);
     }
     return SWARF_OK;
 }
@@ -156,16 +107,16 @@ swarf_status swarf_canvas_edges(swarf_canvas *c, const swarf_progress *progress,
     const double third = (to - from) / 3;
     const size_t rows = (size_t)c->height, squares = rows * (size_t)c->width;
     struct counting counting = {c, c->height / (2 * WINDOWS) + 1, malloc(squares * sizeof *counting.across)};
-    c->edge = malloc(squares);
-    c->outline = malloc(squares);
-    c->room = malloc(squares);
-    swarf_status status = counting.across && c->edge && c->outline && c->room
-                              ? SWARF_OK
-                              : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for edges");
+    c->mark = malloc(squares * sizeof *c->mark);
+    swarf_status status =
+        counting.across && c->mark ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for edges");
     if (status == SWARF_OK) status = swarf_parallel_for(rows, mark_row, c, progress, from, from + third);
     if (status == SWARF_OK)
         status = swarf_parallel_for(rows, count_across, &counting, progress, from + third, to - third);
     if (status == SWARF_OK) status = swarf_parallel_for(rows, find_room, &counting, progress, to - third, to);
     free(counting.across);
+    if (status == SWARF_OK) return SWARF_OK;
+    free(c->mark);
+    c->mark = NULL;
     return status;
 }

@@ -161,31 +161,33 @@ static swarf_status find_middles(swarf_canvas *c, const swarf_progress *progress
     const size_t count = (size_t)tiles(c->width) * (size_t)tiles(c->height);
     SWARF_TRY(swarf_parallel_for(count, look_tile, c, progress, 0, c->middle ? looked : 1));
     if (!c->middle || !c->options->exact) return SWARF_OK;
-    return swarf_look_refine(&c->look, c->middle, (size_t)c->width * (size_t)c->height, place_of_middle, c, progress,
+    return swarf_look_refine(&c->look, c->middle, (size_t)c->width * (size_t)c->height, 0, place_of_middle, c, progress,
                              looked, refined);
 }
 
-/** Light of the middles, that which is recalled and the rest that the options ask for. */
-static swarf_status find_light(swarf_canvas *c, swarf_recall *recall, const swarf_progress *progress, double from,
-                               double to)
+/** Light, shades and lines, of which a part `lit` is light. */
+static swarf_status finish(swarf_canvas *c, const swarf_progress *progress, double from, double lit)
 {
-    if (c->options->occlusion) c->sky = recall->sky;
-    if (c->options->shadow) c->sun = recall->sun;
-    const swarf_status status = swarf_canvas_light(c, progress, from, to);
-    if (c->sky) recall->sky = c->sky;
-    if (c->sun) recall->sun = c->sun;
-    return status;
+    SWARF_TRY(swarf_canvas_light(c, progress, from, lit));
+    SWARF_TRY(swarf_canvas_shade(c, progress, lit, 1));
+    return swarf_canvas_lines(c);
 }
 
-/** All that follows once the middles are known, which took the part `from` of the work. */
+/** All that follows once the middles are known, which took the part `from` of the work: with what the recall knows of
+ *  what the options ask for, and the recall knows it all afterwards. */
 static swarf_status draw(swarf_canvas *c, swarf_recall *recall, const swarf_progress *progress, double from)
 {
     if (!c->middle) return SWARF_OK;
     const int is_lit = (!c->options->occlusion || recall->sky) && (!c->options->shadow || recall->sun);
-    const double lit = is_lit ? from : from + lighting * (1 - from);
-    SWARF_TRY(find_light(c, recall, progress, from, lit));
-    SWARF_TRY(swarf_canvas_shade(c, progress, lit, 1));
-    return swarf_canvas_lines(c);
+    if (c->options->occlusion) c->sky = recall->sky;
+    if (c->options->shadow) c->sun = recall->sun;
+    if (c->options->edges) c->mark = recall->mark;
+    c->detail = &recall->detail;
+    const swarf_status status = finish(c, progress, from, is_lit ? from : from + lighting * (1 - from));
+    if (c->sky) recall->sky = c->sky;
+    if (c->sun) recall->sun = c->sun;
+    if (c->mark) recall->mark = c->mark;
+    return status;
 }
 
 typedef struct output {
@@ -386,9 +388,6 @@ swarf_status swarf_scene_render(swarf_scene *scene, const swarf_camera *camera, 
     const swarf_status status = render(scene, camera, &c, progress, out);
     swarf_scene_leave(scene);
     swarf_look_end(&c.look);
-    free(c.edge);
-    free(c.outline);
-    free(c.room);
     return status;
 }
 
@@ -415,7 +414,7 @@ swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, co
     swarf_status status = swarf_look_begin(scene, camera, options, options->height, &look);
     if (status == SWARF_OK) {
         swarf_look_through(&look, &places, 1, &seen);
-        if (options->exact) status = swarf_look_refine(&look, &sight, 1, place_of_pick, place, NULL, 0, 1);
+        if (options->exact) status = swarf_look_refine(&look, &sight, 1, 0, place_of_pick, place, NULL, 0, 1);
     }
     swarf_look_end(&look);
     swarf_scene_leave(scene);

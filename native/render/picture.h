@@ -5,11 +5,10 @@
  *            picture, which has no use for them once they are shaded
  *   colour   of the squares, linear, premultiplied
  *   bytes    RGBA of the pixels of a plain picture with one ray for each, in place of colours; else NULL
- *   sky      how much of the sky is open, per square; NULL: all of it; the recall's, as is the next
+ *   sky      how much of the sky is open, per square; NULL: all of it; the recall's, as are the next three
  *   sun      255 where the light reaches, per square; NULL: everywhere
- *   edge     how much of an edge the middle of a square is on, 0 .. 255; NULL: edges are not drawn
- *   outline  the same of outlines
- *   room     how dark a line that is no outline may be in a square, 0 .. 255: less where they crowd
+ *   detail   more sights of squares where one does not tell enough
+ *   mark     the lines of edges, per square; NULL: they are not drawn
  */
 #ifndef SWARF_RENDER_PICTURE_H
 #define SWARF_RENDER_PICTURE_H
@@ -31,7 +30,8 @@ typedef struct swarf_canvas {
     uint8_t *bytes;
     float *sky;
     uint8_t *sun;
-    uint8_t *edge, *outline, *room;
+    swarf_detail *detail;
+    swarf_line_mark *mark;
 } swarf_canvas;
 
 /** Place -1 .. 1 of the part 0 .. 1 of a grid square; squares at the right and lower rim may lie partly beyond the

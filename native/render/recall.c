@@ -38,5 +38,7 @@ void swarf_recall_forget(swarf_recall *recall)
     if (recall->is_known) swarf_cutter_release((swarf_cutter *)recall->outlook.cutter);
     free(recall->sky);
     free(recall->sun);
+    free(recall->mark);
+    swarf_detail_forget(&recall->detail);
     *recall = (swarf_recall){.is_known = 0};
 }

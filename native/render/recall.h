@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Recall: what the rays through the middles of a picture's squares met, and what light gets there, is the same in the
- * next picture, while nothing is changed but how it is shaded: more samples, colours, a selection, the path. */
+/* Recall: what the rays through a picture's squares met, and what light gets there, is the same in the next picture,
+ * while nothing is changed but how it is shaded: more samples, open sky, colours, a selection, the path. */
 #ifndef SWARF_RENDER_RECALL_H
 #define SWARF_RENDER_RECALL_H
 
+#include "render/detail.h"
 #include "swarf/render.h"
 
 enum { SWARF_SECTIONS_MAX = 6 };
@@ -18,12 +19,22 @@ typedef struct swarf_outlook {
     double cutter_tip[3];
 } swarf_outlook;
 
-/** What a scene's scratch memory holds the middles of, and their light as far as it was asked for (see picture.h). */
+/** What lines there are about a grid square, 0 .. 255 each. */
+typedef struct swarf_line_mark {
+    uint8_t edge;    /* how much of an edge its middle is on */
+    uint8_t outline; /* of what stands high before what is behind: these lines are dark in any case */
+    uint8_t room;    /* how dark the others may be: less where they crowd */
+} swarf_line_mark;
+
+/** What a scene's scratch memory holds the middles of, and their light, lines and detail as far as they were asked for
+ * (see picture.h). */
 typedef struct swarf_recall {
     swarf_outlook outlook; /* its cutter is kept, so that no other one can take its place in memory */
     int is_known;
     float *sky;
     uint8_t *sun;
+    swarf_line_mark *mark;
+    swarf_detail detail;
 } swarf_recall;
 
 /** The outlook of a picture whose camera and options have been checked, with the coarseness chosen. */

@@ -7,8 +7,9 @@
 
 #include "base/parallel.h"
 #include "base/status.h"
-#include "swarf/surface.h"
+#include "surface/surface.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* Voxels along the ray: what the field cuts off an edge, seen at 80 degrees. */
@@ -29,7 +30,8 @@ typedef struct batch {
     int64_t *move;
     size_t *sight;
     size_t count;
-    int moved; /* what is found lies on the sights' rays */
+    double tolerance; /* mm */
+    int moved;        /* what is found lies on the sights' rays */
 } batch;
 
 /** Points of the sights of a piece, and the ways of their rays. */
@@ -70,22 +72,22 @@ static swarf_status give_some(void *context, size_t piece)
     return SWARF_OK;
 }
 
-static swarf_status find(batch *b, int moved)
+static swarf_status find(batch *b, int moved, const swarf_progress *progress)
 {
     size_t moves;
     const swarf_surface *surface = swarf_scene_surface(b->look->scene, &moves);
     const double reach = reach_voxels * swarf_scene_voxel(b->look->scene);
     b->moved = moved;
-    SWARF_TRY(swarf_surface_refine(surface, moves, b->point, b->direction, b->count, reach, NULL, b->found, b->normal,
-                                   b->move));
+    SWARF_TRY(swarf_surface_refine_to(surface, moves, b->point, b->direction, b->count, reach, b->tolerance, progress,
+                                      b->found, b->normal, b->move));
     return swarf_parallel_for((b->count + PIECE - 1) / PIECE, give_some, b, NULL, 0, 1);
 }
 
-static swarf_status refine(batch *b)
+static swarf_status refine(batch *b, const swarf_progress *progress)
 {
     size_t left = 0;
     SWARF_TRY(swarf_parallel_for((b->count + PIECE - 1) / PIECE, take_some, b, NULL, 0, 1));
-    SWARF_TRY(find(b, 1));
+    SWARF_TRY(find(b, 1, progress));
     for (size_t i = 0; i < b->count; i++) {
         if (b->move[i] != -2) continue;
         for (size_t axis = 0; axis < 3; axis++) {
@@ -95,17 +97,29 @@ static swarf_status refine(batch *b)
         b->sight[left++] = b->sight[i];
     }
     b->count = left;
-    return left ? find(b, 0) : SWARF_OK;
+    return left ? find(b, 0, NULL) : SWARF_OK;
 }
 
-swarf_status swarf_look_refine(const swarf_look *look, swarf_sight *sights, size_t count, swarf_place_fn place,
-                               const void *context, const swarf_progress *progress, double from, double to)
+/** Edge (mm) of a grid square where it is least: as near to the eye as anything can be seen. */
+static double least_footprint(const swarf_look *look)
+{
+    double square = 0;
+    if (!look->frame.perspective) return look->pixel;
+    for (int axis = 0; axis < 3; axis++)
+        square += (look->middle[axis] - look->frame.eye[axis]) * (look->middle[axis] - look->frame.eye[axis]);
+    return look->pixel * fmax(sqrt(square) - 0.5 * look->size, 0);
+}
+
+swarf_status swarf_look_refine(const swarf_look *look, swarf_sight *sights, size_t count, double close_enough,
+                               swarf_place_fn place, const void *context, const swarf_progress *progress, double from,
+                               double to)
 {
     size_t moves;
     if (!swarf_scene_surface(look->scene, &moves) || count == 0) return SWARF_OK;
     const size_t room = count < BATCH ? count : BATCH;
     double *const numbers = malloc(room * 12 * sizeof *numbers);
     batch b = {.look = look,
+               .tolerance = close_enough * least_footprint(look),
                .sights = sights,
                .place = place,
                .context = context,
@@ -118,11 +132,13 @@ swarf_status swarf_look_refine(const swarf_look *look, swarf_sight *sights, size
     b.normal = numbers + 6 * room;
     b.found = numbers + 9 * room;
     for (size_t index = 0; status == SWARF_OK && index < count;) {
+        swarf_progress_share share = {progress, from + (to - from) * (double)index / (double)count, to};
         for (b.count = 0; index < count && b.count < room; index++)
             if (sights[index].seen == SWARF_SEEN_STOCK && place(context, index, NULL)) b.sight[b.count++] = index;
-        if (b.count) status = refine(&b);
-        if (status == SWARF_OK)
-            status = swarf_progress_report(progress, from + (to - from) * (double)index / (double)count);
+        share.to = from + (to - from) * (double)index / (double)count;
+        const swarf_progress part = swarf_progress_part(&share);
+        if (b.count) status = refine(&b, progress ? &part : NULL);
+        if (status == SWARF_OK) status = swarf_progress_report(progress, share.to);
     }
     free(numbers);
     free(b.move);

@@ -2,24 +2,26 @@
 /* Shading the squares of a picture, with n x n samples for those that are rough: where a square and its eight
  * neighbours do not see one smooth face, and it shows: by a line, or by colours that differ.
  *
- * Strips of 64 rows one after the other, on all cores each. A strip keeps the samples of its rough squares and of two
- * rows on either side, for a sample is on an edge when half a square away something else is seen that goes on beyond:
- *
- *   number   per square of the strip: of its samples, -1: smooth, its middle stands for all of it
- *   sample   n * n sights per rough square
+ * A sample is on an edge when half a square away something else is seen that goes on beyond: that is looked for among
+ * the samples of the squares about it, or their middles where those stand for them.
  */
 #include "base/parallel.h"
 #include "base/status.h"
+#include "render/detail.h"
 #include "render/edges.h"
 #include "render/picture.h"
-#include "render/refine.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Of three samples, the last of a row looks four further, into the second row; of two or four into the next one. */
-enum { STRIP = 64, MARGIN = 2 };
+/* Of three samples, the last of a row looks four further, into the second square; of two or four into the next one.
+ * The window is of the samples about those of one square, as many of either side. */
+enum { MARGIN = 2, SIDE_MAX = 4, REACH_MAX = 2, WINDOW_MAX = SIDE_MAX + 4 * REACH_MAX };
+
+/* The samples of a whole picture are kept for the next one when they need no more than this. Those of larger ones are
+ * made and left again in strips of so many rows. */
+enum { KEPT_BYTES_MAX = 128 << 20, STRIP = 64 };
 
 /* One face: neighbours' normals differ by at most 2.5 degrees, and each lies in the plane of the other to 1 in 20 of
  * their distance, so that steps of more than 1/20 pixel show. Larger values save rays and leave jagged edges. */
@@ -27,18 +29,6 @@ static const float same_face_cosine = 0.999f, same_face_slope = 0.05f;
 
 /* Colours that differ by less than this part of white, as they are shown, make no jagged edge that one could see. */
 static const float same_colour = 4.0f / 255;
-
-typedef struct strip {
-    swarf_canvas *canvas;
-    const uint8_t *is_rough; /* per square of the canvas */
-    int32_t top, rows;       /* with those of the margin on either side where there are any */
-    int32_t own, end;        /* rows of the canvas whose colours are this strip's */
-    int32_t *number;
-    size_t *count; /* rough squares of a row, then those of the rows before it */
-    size_t *rough; /* squares of the canvas */
-    swarf_sight *sample;
-    size_t rough_count;
-} strip;
 
 static int is_same_face(const swarf_sight *a, const swarf_sight *b)
 {
@@ -67,6 +57,13 @@ static int is_same_colour(const float a[4], const float b[4])
     return 1;
 }
 
+/** Whether there is a line about two squares, or they look different. */
+static int shows(const swarf_canvas *c, size_t own, size_t other)
+{
+    return (c->mark && (c->mark[own].edge || c->mark[other].edge)) || c->middle[own].seen != c->middle[other].seen ||
+           !is_same_colour(c->colour[own], c->colour[other]);
+}
+
 static int is_rough(const swarf_canvas *c, int32_t x0, int32_t y0)
 {
     const size_t own = swarf_canvas_at(c, x0, y0);
@@ -74,10 +71,8 @@ static int is_rough(const swarf_canvas *c, int32_t x0, int32_t y0)
         for (int32_t x = x0 - 1; x <= x0 + 1; x++) {
             if (x < 0 || y < 0 || x >= c->width || y >= c->height) continue;
             const size_t other = swarf_canvas_at(c, x, y);
-            if (c->middle[own].move == c->middle[other].move && is_same_face(&c->middle[own], &c->middle[other]))
-                continue;
-            if (c->middle[own].seen != c->middle[other].seen || (c->edge && (c->edge[own] || c->edge[other])) ||
-                !is_same_colour(c->colour[own], c->colour[other]))
+            if (!shows(c, own, other)) continue;
+            if (c->middle[own].move != c->middle[other].move || !is_same_face(&c->middle[own], &c->middle[other]))
                 return 1;
         }
     return 0;
@@ -119,7 +114,7 @@ static swarf_status shade_row(void *context, size_t row)
 /** How dark the line in a square is, of an edge and an outline there. */
 static float line_of(const swarf_canvas *c, size_t square, float edge, float outline)
 {
-    return fmaxf(edge * (float)c->room[square] / 255, outline);
+    return fmaxf(edge * (float)c->mark[square].room / 255, outline);
 }
 
 /** Edges of a row of squares that have one ray each. */
@@ -127,8 +122,9 @@ static swarf_status draw_row_edges(void *context, size_t row)
 {
     const swarf_canvas *c = context;
     for (size_t at = row * (size_t)c->width; at < (row + 1) * (size_t)c->width; at++)
-        if (c->edge[at])
-            swarf_edge_draw(c->colour[at], line_of(c, at, (float)c->edge[at] / 255, (float)c->outline[at] / 255));
+        if (c->mark[at].edge)
+            swarf_edge_draw(c->colour[at],
+                            line_of(c, at, (float)c->mark[at].edge / 255, (float)c->mark[at].outline / 255));
     return SWARF_OK;
 }
 
@@ -146,176 +142,118 @@ static swarf_status judge_row(void *context, size_t row)
     return SWARF_OK;
 }
 
-/** Count the rough squares of a row. */
-static swarf_status count_row(void *context, size_t row)
-{
-    const strip *s = context;
-    const size_t width = (size_t)s->canvas->width;
-    const uint8_t *own = s->is_rough + ((size_t)s->top + row) * width;
-    size_t rough = 0;
-    for (size_t x = 0; x < width; x++) s->number[row * width + x] = own[x] ? (int32_t)rough++ : -1;
-    s->count[row + 1] = rough;
-    return SWARF_OK;
-}
+typedef struct resolving {
+    swarf_canvas *canvas;
+    const uint8_t *is_rough; /* per square of the canvas */
+    int32_t top;             /* row of the first piece of work */
+} resolving;
 
-static swarf_status list_row(void *context, size_t row)
+/** The sights about square (x, y), at `window` with a row for each of theirs; NULL beyond the picture. */
+static void open_window(const resolving *r, int32_t x, int32_t y, int32_t reach,
+                        const swarf_sight *window[WINDOW_MAX][WINDOW_MAX])
 {
-    const strip *s = context;
-    const size_t width = (size_t)s->canvas->width;
-    for (size_t x = 0; x < width; x++) {
-        int32_t *number = &s->number[row * width + x];
-        if (*number < 0) continue;
-        *number += (int32_t)s->count[row];
-        s->rough[*number] = ((size_t)s->top + row) * width + x;
-    }
-    return SWARF_OK;
-}
-
-/* Rough squares that one piece of work samples: some 0.1 ms. */
-enum { PIECE = 64 };
-
-/** Where sample `index` of the strip lies. That in the middle of its square has been seen before. */
-static int place_of_sample(const void *context, size_t index, double place[2])
-{
-    const strip *s = context;
-    const swarf_canvas *c = s->canvas;
-    const int32_t n = c->options->samples, sub = (int32_t)(index % (size_t)(n * n)), row = sub / n;
-    const int is_new = 2 * sub + 1 != n * n;
-    if (!place) return is_new;
-    const size_t square = s->rough[index / (size_t)(n * n)];
-    place[0] = swarf_canvas_x(c, (int32_t)(square % (size_t)c->width), (sub % n + 0.5) / n);
-    place[1] = swarf_canvas_y(c, (int32_t)(square / (size_t)c->width), (row + 0.5) / n);
-    return is_new;
-}
-
-/** Send the rays of some squares, one after the other in full packets. */
-static swarf_status sample_some(void *context, size_t index)
-{
-    const strip *s = context;
-    const size_t each = (size_t)s->canvas->options->samples * (size_t)s->canvas->options->samples;
-    const size_t last = (index + 1) * PIECE < s->rough_count ? (index + 1) * PIECE : s->rough_count;
-    for (size_t sample = index * PIECE * each; sample < last * each;) {
-        swarf_places places[SWARF_GROUP] = {{.count = 0}};
-        swarf_sight *out[SWARF_GROUP];
-        int count = 0;
-        for (; count < SWARF_GROUP && sample < last * each; count++) {
-            swarf_places *const own = &places[count];
-            out[count] = s->sample + sample;
-            for (; own->count < SWARF_PACKET && sample < last * each; own->count++, sample++) {
-                double place[2];
-                (void)place_of_sample(s, sample, place);
-                own->x[own->count] = place[0];
-                own->y[own->count] = place[1];
-            }
-        }
-        swarf_look_through(&s->canvas->look, places, count, out);
-    }
-    for (size_t number = index * PIECE; each % 2 && number < last; number++)
-        s->sample[number * each + each / 2] = s->canvas->middle[s->rough[number]];
-    return SWARF_OK;
-}
-
-/** The sight of sample (i, j), counted over the whole strip; NULL beyond it. */
-static const swarf_sight *sight_at(const strip *s, int32_t i, int32_t j)
-{
-    const swarf_canvas *c = s->canvas;
+    const swarf_canvas *c = r->canvas;
+    const swarf_detail *detail = c->detail;
     const int32_t n = c->options->samples;
-    if (i < 0 || j < 0 || i >= n * c->width || j >= n * s->rows) return NULL;
-    const int32_t x = i / n, y = j / n, number = s->number[(size_t)y * (size_t)c->width + (size_t)x];
-    if (number < 0) return &c->middle[swarf_canvas_at(c, x, s->top + y)];
-    return &s->sample[(size_t)number * (size_t)(n * n) + (size_t)(j % n * n + i % n)];
+    for (int32_t dy = -MARGIN; dy <= MARGIN; dy++)
+        for (int32_t dx = -MARGIN; dx <= MARGIN; dx++) {
+            const int is_out = x + dx < 0 || y + dy < 0 || x + dx >= c->width || y + dy >= c->height;
+            const size_t at = is_out ? 0 : swarf_canvas_at(c, x + dx, y + dy);
+            const int is_fine = !is_out && r->is_rough[at];
+            const swarf_sight *first = is_out    ? NULL
+                                       : is_fine ? detail->sight + (size_t)detail->slot[at] * (size_t)(n * n)
+                                                 : &c->middle[at];
+            const int32_t left = n * dx + 2 * reach, up = n * dy + 2 * reach, end = n + 4 * reach;
+            for (int32_t j = up < 0 ? -up : 0; j < n && up + j < end; j++)
+                for (int32_t i = left < 0 ? -left : 0; i < n && left + i < end; i++)
+                    window[up + j][left + i] = is_fine ? first + j * n + i : first;
+        }
 }
 
-/** How dark the line is at a sample of square `square`. */
-static float line_at(const strip *s, size_t square, const swarf_sight *own, int32_t i, int32_t j)
+/** How dark the line is at the sample (i, j) of the window, which is one of square `at`. */
+static float line_at(const swarf_canvas *c, size_t at, const swarf_sight *const window[WINDOW_MAX][WINDOW_MAX],
+                     int32_t i, int32_t j, int32_t reach)
 {
     static const int32_t steps[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
-    const int32_t reach = (s->canvas->options->samples + 1) / 2; /* half a square, rounded up */
+    const swarf_sight *const own = window[j][i];
+    const float footprint = (float)swarf_look_footprint(&c->look, own);
     float edge = 0, height = 0;
     for (int step = 0; step < (reach > 1 ? 8 : 4) && height < INFINITY; step++) {
         const int32_t di = reach * steps[step][0], dj = reach * steps[step][1];
-        const swarf_sight *other = sight_at(s, i + di, j + dj);
-        if (!other) continue;
-        height = fmaxf(height, swarf_edge_height(&s->canvas->look, own, other));
-        const float crease = swarf_edge_crease(own, other);
+        const swarf_sight *const other = window[j + dj][i + di];
+        if (!other || other == own) continue;
+        const float own_height = swarf_edge_height(footprint, own, other), crease = swarf_edge_crease(own, other);
+        if (own_height > height) height = own_height;
         if (crease > edge)
-            edge = fmaxf(edge,
-                         swarf_edge_beyond(crease, sight_at(s, i - di, j - dj), sight_at(s, i + 2 * di, j + 2 * dj)));
+            edge = fmaxf(edge, swarf_edge_beyond(crease, window[j - dj][i - di], window[j + 2 * dj][i + 2 * di]));
     }
-    return line_of(s->canvas, square, fmaxf(edge, swarf_edge_step(height)), swarf_edge_outline(height));
+    return line_of(c, at, fmaxf(edge, swarf_edge_step(height)), swarf_edge_outline(height));
 }
 
-static swarf_status resolve_some(void *context, size_t index)
+/** The mean of a square's samples. */
+static void resolve_square(const resolving *r, int32_t x, int32_t y)
 {
-    const strip *s = context;
-    const swarf_canvas *c = s->canvas;
-    const int32_t n = c->options->samples;
-    for (size_t number = index * PIECE; number < (index + 1) * PIECE && number < s->rough_count; number++) {
-        const int32_t x = (int32_t)(s->rough[number] % (size_t)c->width);
-        const int32_t y = (int32_t)(s->rough[number] / (size_t)c->width);
-        float *sum = c->colour[s->rough[number]];
-        if (y < s->own || y >= s->end) continue;
-        const swarf_sight *sample = &s->sample[number * (size_t)(n * n)];
-        swarf_spot spots[SWARF_PACKET];
-        float one[SWARF_PACKET][4];
-        for (int32_t sub = 0; sub < n * n; sub++) {
-            const int32_t sub_row = sub / n;
-            spots[sub] = spot_of(c, x, y, (sub_row + 0.5) / n, &sample[sub]);
-        }
-        swarf_shade(&c->shading, spots, n * n, one);
-        memset(sum, 0, sizeof *c->colour);
-        for (int32_t sub = 0; sub < n * n; sub++) {
-            const int32_t i = n * x + sub % n, j = n * (y - s->top) + sub / n;
-            const float line = c->edge ? line_at(s, s->rough[number], &sample[sub], i, j) : 0;
-            if (line > 0) swarf_edge_draw(one[sub], line);
-            for (int channel = 0; channel < 4; channel++) sum[channel] += one[sub][channel] / (float)(n * n);
-        }
+    const swarf_canvas *c = r->canvas;
+    const size_t at = swarf_canvas_at(c, x, y);
+    const int32_t n = c->options->samples, reach = (n + 1) / 2; /* half a square, rounded up */
+    const swarf_sight *const sample = c->detail->sight + (size_t)c->detail->slot[at] * (size_t)(n * n);
+    const swarf_sight *window[WINDOW_MAX][WINDOW_MAX];
+    swarf_spot spots[SWARF_PACKET] = {{.sky = 1}};
+    float one[SWARF_PACKET][4], *const sum = c->colour[at];
+    for (int32_t sub = 0; sub < n * n; sub++) {
+        const int32_t sub_row = sub / n;
+        spots[sub] = spot_of(c, x, y, (sub_row + 0.5) / n, &sample[sub]);
     }
+    swarf_shade(&c->shading, spots, n * n, one);
+    memset(sum, 0, sizeof *c->colour);
+    if (c->mark) open_window(r, x, y, reach, window);
+    for (int32_t sub = 0; sub < n * n; sub++) {
+        const float line = c->mark ? line_at(c, at, window, 2 * reach + sub % n, 2 * reach + sub / n, reach) : 0;
+        if (line > 0) swarf_edge_draw(one[sub], line);
+        for (int channel = 0; channel < 4; channel++) sum[channel] += one[sub][channel] / (float)(n * n);
+    }
+}
+
+static swarf_status resolve_row(void *context, size_t row)
+{
+    const resolving *r = context;
+    const int32_t y = r->top + (int32_t)row;
+    for (int32_t x = 0; x < r->canvas->width; x++)
+        if (r->is_rough[swarf_canvas_at(r->canvas, x, y)]) resolve_square(r, x, y);
     return SWARF_OK;
 }
 
-static swarf_status shade_strip(strip *s)
+/** Samples of the rough squares in rows top .. end - 1 and about them, and what these rows become by them. */
+static swarf_status sample_rows(resolving *r, int32_t end, const swarf_progress *progress, double from, double to)
 {
-    const size_t rows = (size_t)s->rows, side = (size_t)s->canvas->options->samples, samples = side * side;
-    s->count[0] = 0;
-    SWARF_TRY(swarf_parallel_for(rows, count_row, s, NULL, 0, 1));
-    for (size_t row = 0; row < rows; row++) s->count[row + 1] += s->count[row];
-    s->rough_count = s->count[rows];
-    if (s->rough_count == 0) return SWARF_OK;
-    s->rough = malloc(s->rough_count * sizeof *s->rough);
-    s->sample = malloc(s->rough_count * samples * sizeof *s->sample);
-    if (!s->rough || !s->sample) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for samples");
-    const size_t pieces = (s->rough_count + PIECE - 1) / PIECE;
-    SWARF_TRY(swarf_parallel_for(rows, list_row, s, NULL, 0, 1));
-    SWARF_TRY(swarf_parallel_for(pieces, sample_some, s, NULL, 0, 1));
-    if (s->canvas->options->exact)
-        SWARF_TRY(
-            swarf_look_refine(&s->canvas->look, s->sample, s->rough_count * samples, place_of_sample, s, NULL, 0, 1));
-    return swarf_parallel_for(pieces, resolve_some, s, NULL, 0, 1);
+    const swarf_canvas *c = r->canvas;
+    const int32_t above = r->top > MARGIN ? r->top - MARGIN : 0;
+    const int32_t below = end + MARGIN < c->height ? end + MARGIN : c->height;
+    const double seen = from + 0.8 * (to - from); /* the parts of the progress by what they cost */
+    SWARF_TRY(swarf_detail_add(c->detail, c, r->is_rough, above, below, progress, from, seen));
+    return swarf_parallel_for((size_t)(end - r->top), resolve_row, r, progress, seen, to);
 }
 
-static swarf_status sample_strips(swarf_canvas *c, const uint8_t *is_rough, const swarf_progress *progress, double from,
-                                  double to)
+static swarf_status sample(swarf_canvas *c, const uint8_t *is_rough, const swarf_progress *progress, double from,
+                           double to)
 {
-    strip s = {.canvas = c, .is_rough = is_rough};
-    s.number = malloc((size_t)(STRIP + 2 * MARGIN) * (size_t)c->width * sizeof *s.number);
-    s.count = malloc((STRIP + 2 * MARGIN + 1) * sizeof *s.count);
-    swarf_status status = s.number && s.count ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
-    for (int32_t y = 0; status == SWARF_OK && y < c->height; y += STRIP) {
-        s.own = y;
-        s.end = y + STRIP < c->height ? y + STRIP : c->height;
-        s.top = y > MARGIN ? y - MARGIN : 0;
-        s.rows = (s.end + MARGIN < c->height ? s.end + MARGIN : c->height) - s.top;
-        status = shade_strip(&s);
-        free(s.rough);
-        free(s.sample);
-        s.rough = NULL;
-        s.sample = NULL;
-        if (status == SWARF_OK) status = swarf_progress_report(progress, from + (to - from) * s.end / c->height);
+    const size_t squares = (size_t)c->width * (size_t)c->height;
+    const size_t each = (size_t)c->options->samples * (size_t)c->options->samples * sizeof(swarf_sight);
+    size_t rough = 0;
+    for (size_t i = 0; i < squares; i++) rough += is_rough[i];
+    resolving r = {.canvas = c, .is_rough = is_rough};
+    if (rough * each <= KEPT_BYTES_MAX) {
+        if ((rough + c->detail->count) * each > KEPT_BYTES_MAX) swarf_detail_forget(c->detail);
+        return sample_rows(&r, c->height, progress, from, to);
     }
-    free(s.number);
-    free(s.count);
-    return status;
+    const double part = (to - from) / c->height;
+    for (; r.top < c->height; r.top += STRIP) {
+        const int32_t end = r.top + STRIP < c->height ? r.top + STRIP : c->height;
+        swarf_detail_forget(c->detail);
+        SWARF_TRY(sample_rows(&r, end, progress, from + part * r.top, from + part * end));
+    }
+    swarf_detail_forget(c->detail);
+    return SWARF_OK;
 }
 
 swarf_status swarf_canvas_shade(swarf_canvas *c, const swarf_progress *progress, double from, double to)
@@ -326,15 +264,15 @@ swarf_status swarf_canvas_shade(swarf_canvas *c, const swarf_progress *progress,
     const double marked = from + (to - from) * (is_single ? 0.9 : 0.2), judged = from + (to - from) * 0.25;
     const size_t rows = (size_t)c->height;
     SWARF_TRY(swarf_parallel_for(rows, shade_row, c, progress, from, shaded));
-    if (c->options->edges) SWARF_TRY(swarf_canvas_edges(c, progress, shaded, marked));
+    if (c->options->edges && !c->mark) SWARF_TRY(swarf_canvas_edges(c, progress, shaded, marked));
     if (is_single) {
-        if (c->edge) SWARF_TRY(swarf_parallel_for(rows, draw_row_edges, c, progress, marked, to));
+        if (c->mark) SWARF_TRY(swarf_parallel_for(rows, draw_row_edges, c, progress, marked, to));
         return swarf_progress_report(progress, to);
     }
     struct judging judging = {c, malloc(rows * (size_t)c->width)};
     if (!judging.is_rough) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
     swarf_status status = swarf_parallel_for(rows, judge_row, &judging, progress, marked, judged);
-    if (status == SWARF_OK) status = sample_strips(c, judging.is_rough, progress, judged, to);
+    if (status == SWARF_OK) status = sample(c, judging.is_rough, progress, judged, to);
     free(judging.is_rough);
     return status;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Many points onto the surface: sorted into cells, so that what a cell needs is gathered once for all of its points.
- * A place is the number of its cell, 21 bits per axis; they are sorted digit by digit of those bits in which they
- * differ. */
+ * A place is the number of its cell, 21 bits per axis; they are sorted digit by digit of those bits up to which they
+ * differ on each axis. */
 #include "base/parallel.h"
 #include "base/status.h"
 #include "surface/surface.h"
@@ -21,16 +21,19 @@ struct place {
 };
 
 enum { AXIS_BITS = 21, DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
+/* Points that one piece of work finds the cells of: some 0.1 ms. */
+enum { PIECE = 1 << 12 };
 
 struct refining {
     const swarf_surface *surface;
     size_t moves;
     const double *points, *directions;
-    double reach, *points_out, *normals_out;
+    double reach, tolerance, *points_out, *normals_out;
     int64_t *moves_out;
     swarf_surface_point *found_out; /* instead of all these */
     double edge;
-    const struct place *places;
+    size_t count;
+    struct place *places;
     const size_t *runs; /* where the places of each cell start */
     swarf_surface_near **near;
     int near_count;
@@ -41,10 +44,12 @@ static void along(const double p[3], const double d[3], double s, double out[3])
     for (int k = 0; k < 3; k++) out[k] = p[k] + s * d[k];
 }
 
-/* Newton steps first; where they do not end, the nearest change of sign on a row of samples. */
-static int find_zero(const swarf_surface_near *near, const double p[3], const double d[3], double reach, double *s,
-                     swarf_surface_point *found)
+/* Newton steps first; where they do not end, the nearest change of sign on a row of samples. The step from within the
+ * tolerance is the last one: nobody looks from where it leads. */
+static int find_zero(const struct refining *work, const swarf_surface_near *near, const double p[3], const double d[3],
+                     double *s, swarf_surface_point *found)
 {
+    const double reach = work->reach;
     double q[3];
     *s = 0;
     for (int step = 0; step < 8; step++) {
@@ -55,6 +60,7 @@ static int find_zero(const swarf_surface_near *near, const double p[3], const do
         if (fabs(slope) < 0.2) break;
         *s -= found->value / slope;
         if (fabs(*s) > reach) break;
+        if (fabs(found->value) <= work->tolerance) return 1;
     }
     enum { SAMPLES = 8 };
     swarf_surface_evaluate(near, p, found);
@@ -83,7 +89,7 @@ static void refine_point(const struct refining *work, const swarf_surface_near *
     const double length = sqrt(given[0] * given[0] + given[1] * given[1] + given[2] * given[2]);
     for (int k = 0; k < 3; k++) d[k] = given[k] / length;
     swarf_surface_point found;
-    const int ok = find_zero(near, p, d, work->reach, &s, &found);
+    const int ok = find_zero(work, near, p, d, &s, &found);
     if (work->found_out) {
         if (!ok) found = (swarf_surface_point){.move = -2};
         work->found_out[i] = found;
@@ -137,17 +143,38 @@ static uint64_t cell_of(const double point[3], double edge)
     return cell;
 }
 
-/* Sort by cells, stable; `spare` has room for as many. Where they are then: one of both. */
-static struct place *sort_places(struct place *places, struct place *spare, size_t count)
+/* Leave out the bits of the cells in which none differs from another, above those of each axis; how many are left. */
+static int shorten(struct place *places, size_t count)
 {
     uint64_t some = 0, all = UINT64_MAX;
+    int bits[3], sum = 0;
     for (size_t i = 0; i < count; i++) {
         some |= places[i].cell;
         all &= places[i].cell;
     }
-    for (int shift = 0; shift < 3 * AXIS_BITS; shift += DIGIT_BITS) {
+    const uint64_t axis_mask = (1u << AXIS_BITS) - 1;
+    for (int k = 0; k < 3; k++) {
+        const uint64_t differ = (some ^ all) >> (k * AXIS_BITS) & axis_mask;
+        bits[k] = differ ? 64 - __builtin_clzll(differ) : 0;
+        sum += bits[k];
+    }
+    for (size_t i = 0; i < count; i++) {
+        uint64_t cell = 0;
+        for (int k = 2; k >= 0; k--) {
+            const uint64_t own = places[i].cell >> (k * AXIS_BITS);
+            cell = cell << bits[k] | (own & ((1u << bits[k]) - 1));
+        }
+        places[i].cell = cell;
+    }
+    return sum;
+}
+
+/* Sort by cells, stable; `spare` has room for as many. Where they are then: one of both. */
+static struct place *sort_places(struct place *places, struct place *spare, size_t count)
+{
+    const int bits = shorten(places, count);
+    for (int shift = 0; shift < bits; shift += DIGIT_BITS) {
         size_t start[DIGITS + 1] = {0};
-        if (((some ^ all) >> shift & (DIGITS - 1)) == 0) continue;
         for (size_t i = 0; i < count; i++) start[(places[i].cell >> shift & (DIGITS - 1)) + 1]++;
         for (int digit = 0; digit < DIGITS; digit++) start[digit + 1] += start[digit];
         for (size_t i = 0; i < count; i++) spare[start[places[i].cell >> shift & (DIGITS - 1)]++] = places[i];
@@ -158,11 +185,32 @@ static struct place *sort_places(struct place *places, struct place *spare, size
     return places;
 }
 
-static swarf_status refine_sorted(struct refining *work, struct place *places, struct place *spare, size_t *runs,
-                                  size_t count, const swarf_progress *progress)
+static swarf_status check_point(const struct refining *work, size_t i)
 {
-    for (size_t i = 0; i < count; i++)
-        places[i] = (struct place){.cell = cell_of(work->points + 3 * i, work->edge), .point = (uint32_t)i};
+    const double *p = work->points + 3 * i, *d = work->directions + 3 * i;
+    for (int k = 0; k < 3; k++)
+        SWARF_REQUIRE(isfinite(p[k]) && isfinite(d[k]),
+                      "surface: coordinate %c of point or direction %zu is not finite", "xyz"[k], i);
+    SWARF_REQUIRE(d[0] != 0 || d[1] != 0 || d[2] != 0, "surface: direction %zu has no length", i);
+    return SWARF_OK;
+}
+
+static swarf_status place_some(void *context, size_t piece)
+{
+    const struct refining *work = context;
+    for (size_t i = piece * PIECE; i < (piece + 1) * PIECE && i < work->count; i++) {
+        SWARF_TRY(check_point(work, i));
+        work->places[i] = (struct place){.cell = cell_of(work->points + 3 * i, work->edge), .point = (uint32_t)i};
+    }
+    return SWARF_OK;
+}
+
+static swarf_status refine_sorted(struct refining *work, struct place *places, struct place *spare, size_t *runs,
+                                  const swarf_progress *progress)
+{
+    const size_t count = work->count;
+    work->places = places;
+    SWARF_TRY(swarf_parallel_for((count + PIECE - 1) / PIECE, place_some, work, NULL, 0, 1));
     places = sort_places(places, spare, count);
     size_t cells = 0;
     for (size_t i = 0; i < count; i++)
@@ -186,17 +234,11 @@ static swarf_status refine(struct refining *work, size_t count, const swarf_prog
     SWARF_REQUIRE(isfinite(work->reach) && work->reach > 0, "surface: reach %g mm is not a positive number",
                   work->reach);
     SWARF_REQUIRE(count < UINT32_MAX, "surface: %zu points at once are too many", count);
-    for (size_t i = 0; i < count; i++) {
-        const double *d = work->directions + 3 * i;
-        for (int k = 0; k < 3; k++)
-            SWARF_REQUIRE(isfinite(work->points[3 * i + (size_t)k]) && isfinite(d[k]),
-                          "surface: coordinate %c of point or direction %zu is not finite", "xyz"[k], i);
-        SWARF_REQUIRE(d[0] != 0 || d[1] != 0 || d[2] != 0, "surface: direction %zu has no length", i);
-    }
     work->edge = cell_voxels * work->surface->voxel;
+    work->count = count;
     struct place *places = malloc(2 * (count + 1) * sizeof *places);
     size_t *runs = malloc((count + 1) * sizeof *runs);
-    const swarf_status status = places && runs ? refine_sorted(work, places, places + count, runs, count, progress)
+    const swarf_status status = places && runs ? refine_sorted(work, places, places + count, runs, progress)
                                                : swarf_fail(SWARF_ERROR_MEMORY, "surface: out of memory");
     free(places);
     free(runs);
@@ -214,6 +256,24 @@ swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, co
                             .points = points,
                             .directions = directions,
                             .reach = reach_mm,
+                            .points_out = points_out,
+                            .normals_out = normals_out,
+                            .moves_out = moves_out};
+    return refine(&work, count, progress);
+}
+
+swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves, const double *points,
+                                     const double *directions, size_t count, double reach_mm, double tolerance_mm,
+                                     const swarf_progress *progress, double *points_out, double *normals_out,
+                                     int64_t *moves_out)
+{
+    SWARF_REQUIRE(surface && (count == 0 || (points && directions && points_out)), "surface: NULL");
+    struct refining work = {.surface = surface,
+                            .moves = moves,
+                            .points = points,
+                            .directions = directions,
+                            .reach = reach_mm,
+                            .tolerance = tolerance_mm,
                             .points_out = points_out,
                             .normals_out = normals_out,
                             .moves_out = moves_out};

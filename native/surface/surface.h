@@ -41,6 +41,13 @@ struct swarf_surface {
     int levels;
 };
 
+/** The same as swarf_surface_refine(), but what comes closer to a zero than `tolerance_mm` takes its normal and its
+ * move from there and goes straight on to where that face would be: what it costs to look once more is saved. */
+swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves, const double *points,
+                                     const double *directions, size_t count, double reach_mm, double tolerance_mm,
+                                     const swarf_progress *progress, double *points_out, double *normals_out,
+                                     int64_t *moves_out);
+
 /** The trace of a part; `parts`: of its move. */
 swarf_status swarf_surface_trace(const swarf_surface *surface, size_t part, swarf_trace *out);
 

@@ -91,7 +91,8 @@ static void aim_at_edge(test_random *random, double out[3])
     for (int axis = 0; axis < 3; axis++) out[axis] += test_random_in(random, -voxel, voxel);
 }
 
-/** What a picture saw is not taken over by the next one when the surface, or how much of it stands, is another. */
+/** What a picture saw is not taken over by the next one when the surface, or how much of it stands, is another; else it
+ *  is, its samples too, and the picture is as if it were not. */
 static void check_recall(swarf_stock *stock, swarf_scene *scene, swarf_surface *surface)
 {
     enum { WIDTH = 120, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
@@ -99,8 +100,8 @@ static void check_recall(swarf_stock *stock, swarf_scene *scene, swarf_surface *
     static int32_t move[PIXELS], fresh_move[PIXELS];
     const swarf_picture_buffers out = {.size = sizeof out, .rgba = rgba, .move = move};
     const swarf_picture_buffers fresh_out = {.size = sizeof out, .rgba = fresh, .move = fresh_move};
-    swarf_surface *const surfaces[] = {surface, surface, NULL, surface};
-    const size_t moves[] = {1, 0, 0, 1};
+    swarf_surface *const surfaces[] = {surface, surface, NULL, surface, surface, surface, surface};
+    const size_t moves[] = {1, 0, 0, 1, 1, 1, 1};
     swarf_picture_options options = swarf_picture_options_default();
     swarf_camera camera;
     options.width = WIDTH;
@@ -108,9 +109,12 @@ static void check_recall(swarf_stock *stock, swarf_scene *scene, swarf_surface *
     options.samples = 2;
     options.occlusion = 0;
     CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 1, &block, (double)WIDTH / HEIGHT, &camera));
-    for (int step = 0; step < 4; step++) {
+    for (int step = 0; step < 7; step++) {
         swarf_scene *once = NULL;
-        CHECK_OK(swarf_scene_set_surface(scene, surfaces[step], moves[step]));
+        if (step == 4) options.samples = 3;
+        if (step == 5) options.occlusion = 1; /* other colours: some squares more are sampled, some are not */
+        if (step == 6) options.colour[2] = 0.1f;
+        if (step < 4) CHECK_OK(swarf_scene_set_surface(scene, surfaces[step], moves[step]));
         CHECK_OK(swarf_scene_render(scene, &camera, &options, NULL, &out));
         CHECK_OK(swarf_scene_create(stock, &once));
         CHECK_OK(swarf_scene_set_surface(once, surfaces[step], moves[step]));
