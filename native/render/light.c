@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Light: how much of the sky each square's surface sees, and whether the light reaches it.
  *
- * The sky is looked for from one square of each block of 2x2, with 16 rays over the half space above the surface, more
- * of them where they count more (cosine weighting). Blocks turn the same pattern by one of 4x4 angles; a square then
- * takes the mean of the 4x4 blocks around it that lie on its own face, which has each angle once. Right beside a wall a
- * ray may start in the rounding of the voxels, which would look like open sky: such blocks have no say.
+ * The sky is looked for from one square of each block of 2x2, with 8 rays over the half space above the surface, more
+ * of them where they count more (cosine weighting). Blocks turn the pattern by one of 4x4 angles, and each goes to
+ * other heights; a square then takes the mean of the 4x4 blocks around it that lie on its own face, which has each
+ * pattern once: 128 different rays. Right beside a wall a ray may start in the rounding of the voxels, which would look
+ * like open sky: such blocks have no say.
  */
 #include "base/parallel.h"
 #include "base/status.h"
@@ -14,7 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK = 2, PATTERN = 4 };
+/* Blocks that share a packet: so many rays has each. */
+enum { BLOCK = 2, PATTERN = 4, SHARE = 2, RAYS = SWARF_PACKET / SHARE };
 
 /* Of the size of what is seen: what lies farther darkens nothing. */
 static const double sky_reach = 0.18;
@@ -26,7 +28,7 @@ typedef struct sky_work {
     swarf_canvas *canvas;
     int32_t across, down; /* blocks */
     float *open;          /* per block, negative: not known */
-    double pattern[PATTERN * PATTERN][SWARF_PACKET][3];
+    double pattern[PATTERN * PATTERN][RAYS][3];
 } sky_work;
 
 static int is_solid(const swarf_sight *sight)
@@ -42,11 +44,13 @@ static void start_above(const swarf_canvas *c, const swarf_sight *sight, swarf_r
 }
 
 /** The patterns: directions over a surface with the normal (0, 0, 1). */
-static void make_patterns(double pattern[PATTERN * PATTERN][SWARF_PACKET][3])
+static void make_patterns(double pattern[PATTERN * PATTERN][RAYS][3])
 {
     for (int turn = 0; turn < PATTERN * PATTERN; turn++)
-        for (int ray = 0; ray < SWARF_PACKET; ray++) {
-            const double square = (ray + 0.5) / SWARF_PACKET, radius = sqrt(square);
+        for (int ray = 0; ray < RAYS; ray++) {
+            /* Seven has no part in sixteen: each turn has a height of its own, far from those of the next ones. */
+            const double height = (7 * turn % (PATTERN * PATTERN) + 0.5) / (PATTERN * PATTERN);
+            const double square = (ray + height) / RAYS, radius = sqrt(square);
             const double angle = ray * golden_angle + turn * (6.28318530717958648 / (PATTERN * PATTERN));
             pattern[turn][ray][0] = radius * cos(angle);
             pattern[turn][ray][1] = radius * sin(angle);
@@ -54,8 +58,8 @@ static void make_patterns(double pattern[PATTERN * PATTERN][SWARF_PACKET][3])
         }
 }
 
-/** Rays over the half space above what was seen. */
-static void look_up(const sky_work *w, const swarf_sight *sight, int turn, swarf_rays *rays)
+/** Rays over the half space above what was seen, from number `first` of the packet on. */
+static void look_up(const sky_work *w, const swarf_sight *sight, int turn, int first, swarf_rays *rays)
 {
     const double n[3] = {sight->normal[0], sight->normal[1], sight->normal[2]};
     const double reach = sky_reach * w->canvas->look.size;
@@ -63,46 +67,65 @@ static void look_up(const sky_work *w, const swarf_sight *sight, int turn, swarf
     vector_cross(n, u, v);
     (void)vector_normalise(v);
     vector_cross(v, n, u);
-    for (int ray = 0; ray < SWARF_PACKET; ray++) {
-        const double *p = w->pattern[turn][ray];
+    for (int i = 0; i < RAYS; i++) {
+        const double *p = w->pattern[turn][i];
+        const int ray = first + i;
         for (int axis = 0; axis < 3; axis++)
             rays->direction[axis][ray] = p[0] * u[axis] + p[1] * v[axis] + p[2] * n[axis];
         start_above(w->canvas, sight, rays, ray);
         rays->reach[ray] = reach;
+        rays->active |= 1u << ray;
     }
-    rays->active = (1u << SWARF_PACKET) - 1;
+}
+
+/** Rays that are not there: what they hold does not matter, but it is something. */
+static void leave_idle(swarf_rays *rays, int first)
+{
+    for (int ray = first; ray < SWARF_PACKET; ray++) {
+        rays->reach[ray] = 1;
+        for (int axis = 0; axis < 3; axis++) {
+            rays->origin[axis][ray] = 0;
+            rays->direction[axis][ray] = 1;
+        }
+    }
 }
 
 static float openness(const sky_work *w, const swarf_rays *rays, unsigned blocked)
 {
-    double open = SWARF_PACKET;
+    double open = RAYS;
     for (unsigned left = blocked; left; left &= left - 1) {
         const double part = rays->distance[__builtin_ctz(left)] / (sky_reach * w->canvas->look.size);
         open -= part < 1 ? 1 - part * part : 0;
     }
-    return (float)(open / SWARF_PACKET);
+    return (float)(open / RAYS);
 }
 
 static swarf_status look_up_row(void *context, size_t row)
 {
     const sky_work *w = context;
     const swarf_canvas *c = w->canvas;
+    const unsigned all = (1u << RAYS) - 1;
     float *open = w->open + row * (size_t)w->across;
     for (int32_t bx = 0; bx < w->across;) {
         swarf_rays rays[SWARF_GROUP];
-        int32_t block[SWARF_GROUP];
+        int32_t block[SWARF_GROUP * SHARE];
         unsigned blocked[SWARF_GROUP], inside[SWARF_GROUP];
         int count = 0;
-        for (; bx < w->across && count < SWARF_GROUP; bx++) {
+        for (; bx < w->across && count < SWARF_GROUP * SHARE; bx++) {
             const swarf_sight *sight = &c->middle[swarf_canvas_at(c, bx * BLOCK, (int32_t)row * BLOCK)];
             open[bx] = -1;
             if (!is_solid(sight)) continue;
-            look_up(w, sight, (int)(row % PATTERN) * PATTERN + bx % PATTERN, &rays[count]);
+            swarf_rays *const own = &rays[count / SHARE];
+            if (count % SHARE == 0) own->active = 0;
+            look_up(w, sight, (int)(row % PATTERN) * PATTERN + bx % PATTERN, count % SHARE * RAYS, own);
             block[count++] = bx;
         }
-        swarf_look_blocked(&c->look, rays, blocked, inside, count);
-        for (int i = 0; i < count; i++)
-            if (!inside[i]) open[block[i]] = openness(w, &rays[i], blocked[i]);
+        if (count % SHARE) leave_idle(&rays[count / SHARE], count % SHARE * RAYS);
+        swarf_look_blocked(&c->look, rays, blocked, inside, (count + SHARE - 1) / SHARE);
+        for (int i = 0; i < count; i++) {
+            const unsigned own = all << (i % SHARE * RAYS);
+            if (!(inside[i / SHARE] & own)) open[block[i]] = openness(w, &rays[i / SHARE], blocked[i / SHARE] & own);
+        }
     }
     return SWARF_OK;
 }
