@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* What matters within a small box: gathered once, then looked at from many points in it.
  *
- * Each trace is looked at from the middle of the box; `raw` there changes no faster than a point moves, which bounds it
- * everywhere in the box. What cannot have a zero in the box, or lies behind another trace everywhere, is left out. The
+ * Each trace is looked at from the middle of the box; `raw` there, less the way to a point, bounds what that point
+ * sees. What cannot have a zero in the box, or lies behind another trace everywhere, is left out. The
  * rest is ordered by raw, so that a point stops looking as soon as nothing nearer can come; where raw is the least of a
  * few convex functions, their tangents in the middle tell of most traces that they are not the nearest.
  *

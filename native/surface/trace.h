@@ -30,8 +30,8 @@ typedef struct swarf_touch_bound {
     double value, slope[3];
 } swarf_touch_bound;
 
-/** What a point sees of a trace. `raw` never changes faster than the point moves and is never above the distance to the
- *  sweep; it is below 0 wherever `value` is. */
+/** What a point sees of a trace. Within s of it no value is below raw - s, where that is above 0; raw is not above 0
+ * where `value` is below. */
 typedef struct swarf_touch {
     double value, raw;
     double gradient[3]; /* of value, unit */

@@ -132,16 +132,14 @@ class Watching(PanelTest):
         self.settle(panel.transport.end)
         panel.player.seek(1)
         panel.player.toggle()
+        assert panel.transport.playing
         panel.player.toggle()
         assert not panel.transport.playing and panel.transport.wanted == 1.0
         self.settle(1.0)
         # stops
         panel.bar._stops["operation"].setChecked(True)
         panel.player.seek(0)
-        panel.player.set_speed(0.0)
-        self.button("play")
-        wait_for(lambda: not panel.transport.playing, "the stop")
-        self.settle(float(listing.operation_begin[1]))
+        self.play(float(listing.operation_begin[1]))
         panel.bar._stops["operation"].setChecked(False)
 
     def steering(self):
@@ -410,10 +408,7 @@ class Watching(PanelTest):
         row.slider.setValue(500)
         row.flip.click()
         assert panel.section.planes() == (((40.0, 25.0, -7.5), (-1.0, 0.0, 0.0)),)
-        panel.player.set_speed(0.0)
-        self.button("play")
-        wait_for(lambda: not panel.transport.playing, "the end of playing cut open")
-        self.settle()
+        self.play(panel.transport.end)
         screenshot("panel-section-x.png")
         row.flip.click()
         row.axis.setCurrentIndex(1)

@@ -53,10 +53,7 @@ class Verifying(PanelTest):
         assert view.mark is None, "the mark of a finding stays where the stock has moved on"
         panel.bar._stops["finding"].setChecked(True)
         panel.player.seek(0)
-        panel.player.set_speed(0.0)
-        self.button("play")
-        wait_for(lambda: not panel.transport.playing, "the stop at a finding")
-        self.settle(min(item.place for item in found if item.place))
+        self.play(min(item.place for item in found if item.place))
         panel.bar._stops["finding"].setChecked(False)
         panel.findings.run.click()
         panel.findings.run.click()

@@ -123,6 +123,15 @@ class PanelTest:
         assert found is not None and found.isEnabled(), name
         found.click()
 
+    def play(self, place):
+        """Play as fast as it goes; it begins, stops by itself at a place, and the picture of that comes."""
+        assert self.panel.transport.wanted != place, "it is there already"
+        self.panel.player.set_speed(0.0)
+        self.button("play")
+        assert self.panel.transport.playing, "the button does not play"
+        wait_for(lambda: not self.panel.transport.playing, "the end of playing")
+        self.settle(place)
+
     def settle(self, place=None):
         """Wait for the sharp picture of what is wanted, once the view turns no more; at a place."""
         live()  # what was changed may have changed the size of the picture as well

@@ -27,8 +27,10 @@ def make(folder, body):
 
 def test_progress_and_the_whole_file(tmp_path):
     told, seen = [], tmp_path / "seen"
-    encoder = make(tmp_path, 'for n in 1 5 10; do echo frame=$n >>"$told"; '
-                             'while [ $n = 5 -a ! -e "%s" ]; do sleep 0.01; done; done; echo video >"$1"' % seen)
+    # what waits for a report that never comes ends after two minutes
+    encoder = make(tmp_path, 'for n in 1 5 10; do echo frame=$n >>"$told"; k=0; '
+                             'while [ $n = 5 -a ! -e "%s" ]; do k=$((k + 1)); [ $k -lt 12000 ] || exit 9; sleep 0.01; '
+                             'done; done; echo video >"$1"' % seen)
 
     def report(done):
         told.append(done)

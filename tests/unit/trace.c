@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Traces: a look at one with a limit tells what a full touch does, bit for bit, of all that is nearer than the limit,
+ * and of nothing else that it is nearer; and tangents never promise more than there is. All cutters and motions. */
+#include "surface/trace.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cases.h"
+
+enum { POINTS = 60 };
+
+static const double voxel = 0.1;
+
+/** Near the path, where cutters touch, and farther off. */
+static void some_point(const oracle_body *body, const swarf_path *path, test_random *random, double out[3])
+{
+    oracle_random_point(body, path, (test_random_below(random, 4) ? 3 : 60) * voxel, random, out);
+}
+
+/* What looks with limits about the value, and far from it, tell. */
+static void check_look(const swarf_trace *trace, const double point[3], const swarf_touch *touch, test_random *random,
+                       long counts[2])
+{
+    const double value = touch->value;
+    const double limits[] = {value,
+                             nextafter(value, INFINITY),
+                             value + test_random_in(random, 0, 1),
+                             value - test_random_in(random, 0, 1),
+                             1e3,
+                             INFINITY,
+                             -1e3};
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
+        swarf_touch look;
+        memset(&look, 0xa5, sizeof look);
+        swarf_trace_look(trace, point, limits[i], &look);
+        counts[value < limits[i]]++;
+        if (value < limits[i])
+            CHECK(look.value == value && look.t == touch->t && look.piece == touch->piece &&
+                  memcmp(look.gradient, touch->gradient, sizeof look.gradient) == 0);
+        else
+            CHECK(look.value >= limits[i]);
+    }
+}
+
+/* `raw` of another point is not below the least tangent; and what is known of that point from here, which is how far
+ * they lie apart, tells of no sweep too much: neither where it has no material nor how near it comes. */
+static void check_bounds(const swarf_trace *trace, const double point[3], const swarf_touch *touch,
+                         const double other[3])
+{
+    swarf_touch there;
+    double least = INFINITY, square = 0;
+    swarf_trace_touch(trace, other, &there);
+    for (int i = 0; i < touch->bounds; i++) {
+        double bound = touch->bound[i].value;
+        for (int k = 0; k < 3; k++) bound += touch->bound[i].slope[k] * (other[k] - point[k]);
+        least = fmin(least, bound);
+    }
+    for (int k = 0; k < 3; k++) square += (other[k] - point[k]) * (other[k] - point[k]);
+    CHECK(touch->bounds == 0 || there.raw >= least - 1e-9);
+    CHECK(touch->raw - sqrt(square) <= fmax(there.value, 0) + 1e-6);
+    CHECK(there.value >= 0 || there.raw <= 0);
+}
+
+int main(void)
+{
+    test_random random = test_random_begin(61);
+    long counts[2] = {0}, bounded = 0;
+    for (int number = 0; number < CASE_CUTTERS * CASE_MOTIONS; number++) {
+        const char *cutter_name, *motion_name;
+        int curved;
+        swarf_cutter *cutter = case_cutter(number / CASE_MOTIONS, &cutter_name);
+        const oracle_body shape = oracle_body_of(cutter, SWARF_PART_FLUTES);
+        const swarf_path path = case_motion(number % CASE_MOTIONS, &random, &motion_name, &curved);
+        swarf_body *body = NULL;
+        if (!CHECK_OK(swarf_body_create(cutter, SWARF_PART_FLUTES, voxel, &body))) return test_end();
+        const uint32_t parts = swarf_trace_parts(&path);
+        for (uint32_t part = 0; part < parts; part++) {
+            swarf_trace trace;
+            swarf_trace_make(body, &path, 7, part, parts, &trace);
+            for (int i = 0; i < POINTS; i++) {
+                double point[3], other[3];
+                swarf_touch touch;
+                some_point(&shape, &path, &random, point);
+                some_point(&shape, &path, &random, other);
+                swarf_trace_touch(&trace, point, &touch);
+                if (!CHECK(isfinite(touch.value))) printf("    %s, %s\n", cutter_name, motion_name);
+                bounded += touch.bounds > 0;
+                check_look(&trace, point, &touch, &random, counts);
+                check_bounds(&trace, point, &touch, other);
+            }
+        }
+        swarf_body_destroy(body);
+        swarf_cutter_release(cutter);
+    }
+    CHECK(counts[0] > 10000 && counts[1] > 10000 && bounded > 1000);
+    return test_end();
+}
