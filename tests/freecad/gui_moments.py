@@ -3,13 +3,14 @@
 
 import os
 import sys
+import types
 
 import FreeCAD
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
-from gui_support import screenshot, start, wait_for  # noqa: E402
+from gui_support import live, screenshot, start, wait_for  # noqa: E402
 from panel_support import PanelTest, new_job  # noqa: E402
 
 
@@ -98,12 +99,22 @@ class Moments(PanelTest):
         del session.step
         panel.player.seek(5)
         self.settle(5.0)
-        session.draw = no_memory
-        banner.done()
-        panel.view.fit()
-        wait_for(lambda: not panel.view.turning and banner.isVisible() and "emory" in banner.text.text(), "the message")
-        del session.draw
         from freecad.swarf_cam import checks
+        from freecad.swarf_cam.gui.panel import dock
+
+        drawn, told, console = [], [], dock.FreeCAD
+        dock.FreeCAD = types.SimpleNamespace(Console=types.SimpleNamespace(PrintError=told.append))
+        session.draw = lambda *_, **__: (drawn.append(None), no_memory())
+        banner.done()
+        for text in "120":
+            before = len(drawn)
+            self.turn(text)
+            wait_for(lambda: len(drawn) > before, "a picture of another view")
+        wait_for(lambda: banner.isVisible() and "emory" in banner.text.text(), "the message")
+        live()
+        assert len(told) == 1, "the report view says it once, not with each picture: %s" % told
+        del session.draw
+        dock.FreeCAD = console
         run, checks.run = checks.run, no_memory
         panel.findings.run.click()
         wait_for(lambda: not panel.checking.running, "the end of the checks")

@@ -349,6 +349,26 @@ class Watching(PanelTest):
         assert document.getObject("Holes").ViewObject.Visibility
         assert panel.player.selected is None and not self.is_marked((51.07, 12.93, -3))
 
+    def clicking_while_playing(self):
+        """It halts at the picture that was clicked, and tells of that."""
+        panel, view = self.panel, self.panel.view
+        panel.player.seek(0)
+        self.turn("2")
+        self.settle(0.0)
+        panel.picking.found = None
+        panel.player.set_speed(1.0)
+        self.button("play")
+        wait_for(lambda: panel.transport.at > 0, "playing")
+        assert panel.transport.playing
+        place = view.frame.place
+        x, y, _ = view.camera.project((70, 40, 0), view.aspect())
+        click(view, (x + 1) / 2 * view.width(), (1 - y) / 2 * view.height())
+        assert not panel.transport.playing and panel.transport.wanted == place
+        wait_for(lambda: panel.picking.found is not None, "the answer to a click")
+        self.settle(place)
+        panel.player.set_speed(100.0)
+        self.turn("0")
+
     def is_marked(self, point):
         """Whether the picture shows a point in the colour of what is selected."""
         view = self.panel.view
@@ -514,8 +534,8 @@ def check():
     test = Watching()
     document, job = new_job("live")
     test.run((test.preferences,), (test.opening, document, job), (test.transporting,), (test.steering,),
-             (test.origin,), (test.looking, job), (test.clicking, document), (test.section,), (test.accuracy,),
-             (test.outputs, document))
+             (test.origin,), (test.looking, job), (test.clicking, document), (test.clicking_while_playing,),
+             (test.section,), (test.accuracy,), (test.outputs, document))
 
 
 start(check)

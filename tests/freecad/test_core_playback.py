@@ -290,6 +290,31 @@ def test_pick_tells_the_line(swarf, session, table):
     assert session.pick(view, 0.999, 0.999, len(table)) is None
 
 
+def test_pick_beside_a_wall_names_no_neighbour(swarf, session, table):
+    from swarf_cam import session as sessions
+
+    go(session, len(table))
+    camera = swarf.Camera.view("top", session.box, 4 / 3)
+    view = sessions.View(camera, 400, 300)
+    for x, y, _ in (camera.project((35, 13 + away, 0), 4 / 3) for away in (0.05, 0.1, 0.2)):  # the slot ends at y 13
+        assert session.pick(view, x, y, len(table)).move == -1
+    x, y, _ = camera.project((35, 12.95, -2), 4 / 3)
+    found = session.pick(view, x, y, len(table))
+    assert found.point[2] == pytest.approx(-2, abs=1e-3) and session.listing.text(found.line).startswith("G1 X45")
+
+
+def test_pick_of_a_picture_that_the_stock_is_past(swarf, session, table):
+    from swarf_cam import session as sessions
+
+    camera = swarf.Camera.view("top", session.box, 4 / 3)
+    view = sessions.View(camera, 400, 300)
+    x, y, _ = camera.project((35, 10, 0), 4 / 3)
+    stock = go(session, len(table)).hash()
+    assert session.pick(view, x, y, 0).point[2] == pytest.approx(0, abs=1e-3), "nothing was cut in that picture"
+    assert session._playback.at == len(table) and session._playback.stock.hash() == stock, "it stands where it stood"
+    assert session.pick(view, x, y, len(table)).point[2] == pytest.approx(-2, abs=1e-3)
+
+
 def test_a_late_picture_does_not_hide_a_stop(table):
     second = float(listings.Listing(table, operations()).operation_begin[1])
     player = transport.Transport(Clock(table), {transport.STOP_OPERATION: [second]})

@@ -28,8 +28,9 @@ SAMPLES = RAYS_AT_REST[-1]
 # Pixels of the picture per edge of one ray while things move, at most: more cannot be made out.
 COARSE_MAX = 4
 
-# The box that tells which move made a point: its half edge and its voxels, in voxels of the stock.
-PROBE_REACH, PROBE_VOXEL = 0.35, 0.1
+# The box that tells which move made a point: its half edge, in voxels of the stock, where the point is of the voxels
+# alone, and where it is exact and names its move but for what was never cut; its voxels, as a part of that.
+PROBE_REACH, PROBE_REACH_EXACT, PROBE_VOXEL = 0.35, 0.05, 0.3
 
 # Stock in the colours of its deviation: as light as the colours of the legend want it, linear.
 TINTED_MATERIAL = (0.8, 0.8, 0.8)
@@ -272,11 +273,17 @@ class Session:
         return self.data.moves.sections[int(self.data.moves.row(index)[2])][0]
 
     def pick(self, view, x, y, place):
-        """Picked at a place of the picture (x to the right, y upwards, -1 .. 1), or None where nothing is."""
+        """Picked at a place of the picture (x to the right, y upwards, -1 .. 1) of the stock as it is at a place, or
+        None where nothing is. Goes back to where it was."""
         if view.shown == DESIGN:
             return None
-        found = self._current_scene().pick(view.camera, x, y, view.width, view.height,
-                                           sections=dict(view.look).get("sections") or None)
+        home = self._playback.at
+        try:
+            self._go(place)
+            found = self._current_scene().pick(view.camera, x, y, view.width, view.height,
+                                               sections=dict(view.look).get("sections") or None)
+        finally:
+            self._go(home)
         if found is None or found.seen != "stock":
             return None
         move = found.move if found.move >= 0 else self._maker(found.point, int(place))
@@ -291,14 +298,19 @@ class Session:
             result.operation, result.tool = operation, tool
         return result
 
+    def _go(self, place, progress=None):
+        """Stand at a place."""
+        while self._playback.at != place:
+            self.step(place, 0.1, progress)
+
     def _maker(self, point, place):
         """The last of the moves before a place that takes something from a tiny block about a point of the surface:
         no move takes more than up to the surface. -1 when none does."""
         if not place:
             return -1
-        reach = PROBE_REACH * self.voxel_mm
+        reach = (PROBE_REACH_EXACT if self._exact else PROBE_REACH) * self.voxel_mm
         block = self._swarf.Stock.box([value - reach for value in point], [value + reach for value in point],
-                                      PROBE_VOXEL * self.voxel_mm)
+                                      PROBE_VOXEL * reach)
         done = block.simulate(self.program, self.tools, first=0, count=place, batch=1, removed_per_move=True)
         taken = done.removed_per_move
         return next((index for index in range(place - 1, -1, -1) if taken[index] > 0.0), -1)
@@ -315,12 +327,10 @@ class Session:
         home = self._playback.at
         try:
             for number, place in enumerate(places):
-                while self._playback.at != place:
-                    self.step(place, 0.1, progress)
+                self._go(place, progress)
                 self.write_png(os.path.join(folder, "frame-%05d.png" % number), view, place, progress)
                 if on_frame:
                     on_frame((number + 1) / len(places))
         finally:
-            while self._playback.at != home:
-                self.step(home, 0.1)
+            self._go(home)
         return len(places)

@@ -169,11 +169,15 @@ class LivePanel(QtWidgets.QDockWidget):
         return isinstance(error, self.cancelled_type)
 
     def fail(self, error):
-        """Say it in the banner, where the user looks, and in the report view, where it stays."""
+        """Say it in the banner, where the user looks, and in the report view, where it stays: once, however many
+        pictures in a row fail in the same way."""
         text = str(error) or type(error).__name__
         if isinstance(error, MemoryError):
             text = translate("Swarf", "Not enough memory: {0} Choose larger voxels on the page Accuracy.").format(
                 text.rstrip(".") + ".")
+        if self.banner.isVisible() and self.banner.text.text() == text:
+            return
+        if isinstance(error, MemoryError):
             self.tabs.setCurrentWidget(self.accuracy)
         retry = self.job is not None
         self.banner.say("error", text, translate("Swarf", "Read the job again"), self.opening.reload if retry else None)

@@ -24,18 +24,20 @@ class Picking:
         self._panel.inspector.show_values(None)
 
     def pick(self, x, y):
-        """Tell what made the point at a place of the picture, as it is seen."""
-        frame = self._panel.view.frame
-        if self._panel.session is not None and frame is not None:
-            self._panel.opening.call(
-                lambda session, progress: session.pick(frame.view, x, y, frame.place), self._answered)
+        """Tell what made the point at a place of the picture, as it is seen; what plays halts at that picture."""
+        panel, frame = self._panel, self._panel.view.frame
+        if panel.session is None or frame is None:
+            return
+        if panel.transport.playing:
+            panel.player.seek(frame.place)
+        panel.opening.call(lambda session, progress: session.pick(frame.view, x, y, frame.place), self._answered)
 
     def _answered(self, found, error):
         panel = self._panel
         if error is not None:
             panel.fail(error)
             return
-        if panel.transport.playing:  # begun since: what was clicked is being cut again
+        if panel.transport.playing:  # again: what was clicked is being cut
             return
         self.found = found
         panel.view.set_mark(found.point if found else None)
