@@ -97,6 +97,8 @@ static int reading_diameters(reading *r, PyObject *diameters)
 {
     if (!diameters || diameters == Py_None) return 0;
     PyObject *items = PyMapping_Items(diameters);
+    if (!items && PyErr_ExceptionMatches(PyExc_AttributeError))
+        PyErr_SetString(PyExc_TypeError, "diameters: a dict of tool numbers is wanted");
     if (!items) return -1;
     const Py_ssize_t count = PyList_Size(items);
     r->diameters = calloc((size_t)count + 1, sizeof *r->diameters);

@@ -70,8 +70,10 @@ def read(
         tools = {int(number): cutter(tool) for number, tool in project.get("tools", {}).items()}
         names = {int(number): str(tool.get("description", "")) for number, tool in project.get("tools", {}).items()}
         stock = _stock(project)
-    except (ValueError, TypeError, KeyError, AttributeError) as error:
-        raise FormatError(f"{path}: is no CAMotics project: {type(error).__name__}: {error}") from None
+    except KeyError as error:
+        raise FormatError(f"{path}: is no CAMotics project: it has no {error}") from None
+    except (ValueError, TypeError, AttributeError, RecursionError) as error:
+        raise FormatError(f"{path}: is no CAMotics project: {error}") from None
     words = dict(options or {})
     known = {number: 2 * tool.radius() for number, tool in tools.items()}
     words["diameters"] = {**known, **(words.get("diameters") or {})}

@@ -5,6 +5,7 @@ Exit status: 0 done, 1 done with findings of class error, 2 could not run (one l
 """
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
@@ -31,14 +32,31 @@ def interrupt_on_sigterm() -> None:
         signal.signal(signal.SIGTERM, signal.default_int_handler)
 
 
+def open_streams() -> None:
+    """Standard streams that were closed become ones that swallow: Python has None there."""
+    for name in ("stdin", "stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "r" if name == "stdin" else "w", encoding="utf-8"))
+
+
+def of_system(error: OSError) -> str:
+    """What the system says, as the library puts it: the file first. Only standard output has no name."""
+    if error.strerror is None:
+        return str(error) or type(error).__name__
+    return f"{'standard output' if error.filename is None else os.fsdecode(error.filename)}: {error.strerror}"
+
+
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the command with these words (default: of the process); returns the exit status."""
+    open_streams()
     commands = collect()
-    arguments = make_parser(commands).parse_args(argv)
-    interrupt_on_sigterm()
     try:
+        arguments = make_parser(commands).parse_args(argv)
+        interrupt_on_sigterm()
         return int(commands[arguments.command].run(arguments))
-    except (_native.Error, OSError, ValueError, MemoryError) as error:
+    except OSError as error:
+        message = one_line(of_system(error))
+    except (_native.Error, ValueError, MemoryError) as error:
         message = one_line(error) or type(error).__name__
     except KeyboardInterrupt:
         message = "interrupted"

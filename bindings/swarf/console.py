@@ -42,16 +42,18 @@ def check_writable(path: str) -> None:
         raise OSError(f"{path}: cannot be written: {error.strerror or error}") from None
 
 
-def check_outputs(paths: Sequence[Optional[str]], source: str) -> None:
+def check_outputs(paths: Sequence[Optional[str]], sources: Sequence[Optional[str]]) -> None:
     """Refuse, before the long work, outputs (None: not given) that could not be written after it.
 
-    OSError where a file cannot be put; ValueError for one that is the input ``source`` or given twice.
+    OSError where a file cannot be put; ValueError for one that is given twice, or one of the files that are read,
+    ``sources``, the input first (None: not given).
     """
     given = [path for path in paths if path is not None]
     for path in given:
         check_writable(path)
-        if os.path.exists(path) and os.path.exists(source) and os.path.samefile(path, source):
-            raise ValueError(f"{path}: is the input; an output must not replace it")
+        for number, source in enumerate(sources):
+            if source is not None and os.path.exists(path) and os.path.exists(source) and os.path.samefile(path, source):
+                raise ValueError(f"{path}: is {'read, too' if number else 'the input'}; an output must not replace it")
     places = [os.path.realpath(path) for path in given]
     for path, place in zip(given, places):
         if places.count(place) > 1:

@@ -66,6 +66,12 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     gcode.add_arguments(command)
 
 
+def files_read(arguments: argparse.Namespace) -> list[Optional[str]]:
+    """The files that these words name to be read, the input first; None for what is not given."""
+    return [arguments.input, arguments.stock, arguments.tool_table, arguments.parameters,
+            *(set_up.path for set_up in arguments.set_ups or ())]
+
+
 def set_threads(arguments: argparse.Namespace) -> None:
     """``--threads``; ValueError."""
     if abs(arguments.threads) >= 1 << 31:  # no int of C's: the library could not say so

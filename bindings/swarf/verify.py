@@ -10,8 +10,8 @@ from typing import Any, Callable, Optional, Sequence
 from . import accept as accepting
 from . import loads as loading
 from . import loose, readers
-from ._native import (Check, CheckFinding, Cluster, Deviation, Finding, Mesh, Scene, Simulation, Solid, Stock, compare_overlap, compare_place,
-                      measure_deviation)
+from ._native import (Check, CheckFinding, Cluster, Deviation, Finding, GeometryError, Mesh, Scene, Simulation, Solid,
+                      Stock, compare_overlap, compare_place, measure_deviation)
 from .accept import Acceptance
 from .job import Job, operation_of
 from .loads import Limits
@@ -156,7 +156,7 @@ def verify(
             seconds[name] = time.perf_counter() - started
 
     started = time.perf_counter()
-    solid = timed("design", lambda report: Solid(mesh, progress=report))
+    solid = timed("design", lambda report: _solid(mesh, "design", report))
     fixtures = [*job.fixtures, *fixtures]
     clamps = solids_of(fixtures, None if progress is None else lambda fraction: progress("design", fraction))
     earlier = SetUps(clearance)
@@ -325,8 +325,16 @@ def place_text(kind: str, value: float, factor: float, first: Stock, mesh: Mesh)
 
 def solids_of(meshes: Sequence[Mesh], progress: Report = None) -> list[Solid]:
     """Solids of meshes, fixtures. Cancelled, what Solid() raises."""
-    return [Solid(mesh, progress=share(progress, number / len(meshes), (number + 1) / len(meshes)))
+    return [_solid(mesh, f"fixture {number + 1}", share(progress, number / len(meshes), (number + 1) / len(meshes)))
             for number, mesh in enumerate(meshes)]
+
+
+def _solid(mesh: Mesh, what: str, progress: Report) -> Solid:
+    """A Solid; GeometryError says of what."""
+    try:
+        return Solid(mesh, progress=progress)
+    except GeometryError as error:
+        raise GeometryError(f"{what}: {error}") from None
 
 
 def fixture_findings(first: Stock, solids: Sequence[Solid]) -> list[Verdict]:

@@ -10,6 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* mm; stocks reach no farther, nor does any tolerance. */
+static const double farthest = 1e6;
+
 /* Voxels by which values may be off, on smooth faces and within one voxel of edges: there the field is rounded. */
 static const double smooth_error = 0.02, edge_error = 0.5;
 
@@ -50,10 +53,12 @@ swarf_deviation_options swarf_deviation_options_default(void)
 static swarf_status check_options(const swarf_deviation_options *o, size_t source_count)
 {
     SWARF_REQUIRE(o->size == sizeof *o, "deviation: options of another version");
-    SWARF_REQUIRE(isfinite(o->excess_mm) && o->excess_mm > 0, "deviation: a tolerance of %g mm for material left",
+    SWARF_REQUIRE(o->excess_mm > 0 && o->excess_mm <= farthest, "deviation: a tolerance of %g mm for material left",
                   o->excess_mm);
-    SWARF_REQUIRE(isfinite(o->gouge_mm) && o->gouge_mm > 0, "deviation: a tolerance of %g mm for gouges", o->gouge_mm);
-    SWARF_REQUIRE(isfinite(o->allowance_mm), "deviation: the allowance is not finite");
+    SWARF_REQUIRE(o->gouge_mm > 0 && o->gouge_mm <= farthest, "deviation: a tolerance of %g mm for gouges",
+                  o->gouge_mm);
+    SWARF_REQUIRE(fabs(o->allowance_mm) <= farthest, "deviation: an allowance of %g mm; -%g to %g are possible",
+                  o->allowance_mm, farthest, farthest);
     SWARF_REQUIRE(!o->ignore || o->ignore_count == source_count,
                   "deviation: %zu marks for the %zu triangles of the design", o->ignore_count, source_count);
     for (int k = 0; k < 3; k++)

@@ -123,12 +123,13 @@ swarf_status swarf_parameters_read(swarf_parameters *parameters, const char *pat
     size_t length;
     SWARF_TRY(swarf_file_read(path, &data, &length));
     swarf_status status = SWARF_OK;
-    int line = 0, last = 0;
+    int line = 0, last = 0, blank = 1;
     for (const char *at = data, *end = data + length; at < end && status == SWARF_OK;) {
         const char *stop = memchr(at, '\n', (size_t)(end - at));
         if (!stop) stop = end;
         line++;
         double number = 0.0, value = 0.0;
+        blank &= skip_blanks(at, stop) == stop;
         const char *next = swarf_number_read(skip_blanks(at, stop), stop, &number);
         next = next ? swarf_number_read(skip_blanks(next, stop), stop, &value) : NULL;
         if (next && skip_blanks(next, stop) == stop) {
@@ -146,5 +147,9 @@ swarf_status swarf_parameters_read(swarf_parameters *parameters, const char *pat
         at = stop < end ? stop + 1 : end;
     }
     free(data);
+    /* other lines are remarks, but a file of nothing else is another file */
+    if (status == SWARF_OK && !last && !blank)
+        return swarf_fail(SWARF_ERROR_FORMAT, "%s: no line of it is a parameter: its number, 1 to %d, and its value",
+                          path, SWARF_PARAMETERS - 1);
     return status;
 }

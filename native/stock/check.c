@@ -25,6 +25,9 @@
  * triangles, beside whose concave edges the distance to a tool runs short by up to 0.3. */
 static const double stock_depth = 0.06, solid_depth = 0.35;
 
+/* mm; holders with more around them would be none that the cutter room makes. */
+static const double most_clearance = 1000;
+
 /* The first instant is bisected to this share of a voxel. */
 static const double instant = 0.02;
 
@@ -536,8 +539,8 @@ swarf_status swarf_stock_check(swarf_stock *stock, const swarf_program *program,
                   MOST_TARGETS - 1);
     SWARF_REQUIRE(options->fixtures || !options->fixture_count, "check: fixtures missing");
     SWARF_REQUIRE(options->no_plunge || !options->no_plunge_count, "check: tools that cannot plunge missing");
-    SWARF_REQUIRE(isfinite(options->clearance_mm) && options->clearance_mm >= 0, "check: a clearance of %g mm",
-                  options->clearance_mm);
+    SWARF_REQUIRE(options->clearance_mm >= 0 && options->clearance_mm <= most_clearance,
+                  "check: a clearance of %g mm; 0 to %g are possible", options->clearance_mm, most_clearance);
     SWARF_REQUIRE(isfinite(options->design_mm) && options->design_mm >= 0, "check: %g mm into the design",
                   options->design_mm);
     const size_t total = swarf_program_move_count(program);

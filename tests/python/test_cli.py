@@ -9,7 +9,9 @@ import time
 
 import pytest
 
+import swarf
 from conftest import GCODE, SLOT_MM3
+from swarf.cli import main
 
 STOCK = "box:0,0,-10,60,40,0"
 TOOL = "1=flat:d=6,l=20"
@@ -184,10 +186,14 @@ def test_impossible_inputs(refused, tmp_path, name, content, says):
         (("--report", "/proc/r.json"), ["/proc/r.json"]),
         (("--output", "folder.stl"), ["regular file"]),
         (("--output", "s.stl", "--output", "./s.stl"), ["two outputs"]),
+        (("--stock", "old.stl", "--output", "old.stl"), ["old.stl: is read, too"]),
+        (("--then", "old.nc", "--output", "s.stl", "--report", "old.json", "--machine", "old.json"), ["is read, too"]),
     ],
 )
 def test_outputs_are_checked_first(refused, program, tmp_path, words, says):
     (tmp_path / "folder.stl").mkdir()
+    for name in ("old.stl", "old.json", "old.nc"):
+        (tmp_path / name).write_text("old")
     # A voxel that takes minutes: the refusal must come before the work.
     refused(program, "--stock", STOCK, "--tool", TOOL, "--voxel", "0.005", *words, says=says)
 
@@ -196,6 +202,52 @@ def test_no_words(swarf_run):
     for words in ((), ("simulate",), ("mill",), ("simulate", "a.nc", "--nonsense")):
         status, out, err = swarf_run(*words)
         assert status == 2 and err.startswith("swarf: error: ") and err.count("\n") == 1 and not out
+
+
+def test_streams_that_are_closed_or_full(launcher, program):
+    """Closed ones swallow what is said; one that is full is an error like all others."""
+    words = f"'{launcher}' simulate '{program}' --stock {STOCK} --tool {TOOL} --voxel 2"
+    for line, status in ((f"{words} >&-", 0), (f"{words} <&- >&- 2>&-", 0), (f"{words} --voxel 0 2>&-", 2)):
+        done = subprocess.run(["sh", "-c", line], capture_output=True, text=True, timeout=120, check=False)
+        assert (done.returncode, done.stdout, done.stderr) == (status, "", ""), line
+    for line in (f"{words} --help", f"'{launcher}' moves '{program}'"):
+        done = subprocess.run(["sh", "-c", line + " > /dev/full"], capture_output=True, text=True, timeout=120, check=False)
+        assert (done.returncode, done.stderr) == (2, "swarf: error: standard output: No space left on device\n")
+
+
+def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, program, capsys):
+    for name in ("folder.json", "folder.camotics"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "no.camotics").write_text("{}")
+    (tmp_path / "no.var").write_text("this is no parameter\n")
+    (tmp_path / "empty.var").write_text("\n")
+    (tmp_path / "open.stl").write_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                                       "endloop\nendfacet\nendsolid\n")
+    part = str(tmp_path / "part-1.stl")
+    swarf.Mesh.from_stock(swarf.Stock.box((0, 0, -10), (60, 40, 0), 1.0)).write(part)
+    size = os.path.getsize(part)
+    cut = [str(program), "--stock", STOCK, "--tool", TOOL, "--voxel", "2"]
+    held = ["verify", *cut, "--design", part]
+    for words, says in (
+            ([*held, "--accept", str(tmp_path / "folder.json")], "folder.json: Is a directory"),
+            (["simulate", str(tmp_path / "folder.camotics")], "folder.camotics: Is a directory"),
+            (["simulate", str(tmp_path / "no.camotics")], "is no CAMotics project: it has no 'files'"),
+            (["simulate", *cut, "--parameters", str(tmp_path / "no.var")], "no.var: no line of it is a parameter"),
+            (["verify", *cut, "--design", str(tmp_path / "open.stl")], "design: mesh: not closed"),
+            ([*held, "--fixture", part, "--fixture", str(tmp_path / "open.stl")], "fixture 2: mesh: not closed"),
+            ([*held, "--allowance", "1e300"], "an allowance of 1e+300 mm; -1e+06 to 1e+06 are possible"),
+            ([*held, "--tolerance", "1e300"], "a tolerance of 1e+300 mm"),
+            ([*held, "--clearance", "1e300"], "a clearance of 1e+300 mm; 0 to 1000 are possible"),
+            (["mesh", part, "--split-at", "q=3", "--output", part], "plane 'q=3': wanted "),
+            (["mesh", part, "--split", "--output", str(tmp_path / "part.stl")], "part-1.stl: is the input")):
+        try:
+            status = main(words)
+        except SystemExit as ended:  # the parser's own
+            status = ended.code
+        told = capsys.readouterr()
+        assert status == 2 and told.err.count("\n") == 1 and says in told.err, (words, told.err)
+    assert os.path.getsize(part) == size
+    assert main(["simulate", *cut, "--parameters", str(tmp_path / "empty.var")]) == 0
 
 
 def test_help_and_version(swarf_run):

@@ -53,6 +53,12 @@ def test_cutter_parts():
             swarf.Cutter.from_parts(wrong)
 
 
+def test_diameters_that_are_no_dict():
+    for wrong in (5, [5], [[1, 2.0]]):
+        with pytest.raises(TypeError, match="diameters: a dict"):
+            swarf.Program.parse_gcode("G0 X1", diameters=wrong)
+
+
 @given(strategies.text(max_size=40))
 def test_any_cutter_text_is_refused_or_understood(text):
     try:

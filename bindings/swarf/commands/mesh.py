@@ -33,7 +33,7 @@ def add(subparsers: Any) -> None:
                          help=f"write the mesh: {' '.join(MESH_SUFFIXES)}, or .step, of facets (repeatable); one that does not fit into memory only to .stl")
     command.add_argument("--split", action="store_true",
                          help="write every piece that hangs together to a file of its own: FILE-1, FILE-2 ...")
-    command.add_argument("--split-at", metavar="PLANE", type=parse_plane, action="append", default=[],
+    command.add_argument("--split-at", metavar="PLANE", type=_plane, action="append", default=[],
                          help=f"cut it by a plane, each side closed by caps (repeatable); {PLANE_HELP}. Each side goes to "
                          "a file of its own, or each piece of each side with --split")
     command.add_argument("--thickness", action="store_true",
@@ -45,6 +45,13 @@ def add(subparsers: Any) -> None:
 def describe(shell: Any) -> dict[str, Any]:
     """A Shell for JSON."""
     return dict(zip(shell.__match_args__, shell))
+
+
+def _plane(text: str) -> Any:
+    try:
+        return parse_plane(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def measures(mesh: _native.Mesh, thickness: bool) -> dict[str, Any]:
@@ -95,7 +102,10 @@ def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> 
     """The mesh, or its parts, to all files."""
     several = arguments.split or bool(arguments.split_at)
     outputs = sorted(arguments.output, key=is_solid)  # solids last: they may be refused
-    for number, part in enumerate(parts_of(mesh, arguments), 1):
+    parts = parts_of(mesh, arguments)
+    if several:
+        check_outputs([numbered(path, number) for path in outputs for number in range(1, len(parts) + 1)], [arguments.input])
+    for number, part in enumerate(parts, 1):
         tints = colours.by_thickness(part) if arguments.thickness and part.triangle_count else None
         for path in outputs:
             if is_solid(path):
@@ -132,7 +142,7 @@ def run(arguments: argparse.Namespace) -> int:
         if os.path.splitext(path)[1].lower() not in MESH_SUFFIXES + solids.SUFFIXES:
             raise ValueError(f"{path}: unknown suffix; a mesh is {', '.join(MESH_SUFFIXES + solids.SUFFIXES)}")
     _native.set_threads(arguments.threads)
-    check_outputs(arguments.output, arguments.input)
+    check_outputs(arguments.output, [arguments.input])
     with Bar() as bar:
         mesh, error = read(arguments, bar)
         if isinstance(mesh, _native.Stock) and is_streamed(arguments):

@@ -44,7 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
         output_suffix(path)
     check_suffix(arguments.picture, "picture", ".png")
     check_suffix(arguments.report, "report", ".json")
-    check_outputs((*arguments.output, arguments.picture, arguments.report), arguments.input)
+    check_outputs((*arguments.output, arguments.picture, arguments.report),
+                  (*inputs.files_read(arguments), arguments.machine))
     if not (math.isfinite(arguments.tolerance) and arguments.tolerance > 0):
         raise ValueError(f"tolerance {arguments.tolerance:g}: wanted a number above 0")
     if not math.isfinite(arguments.allowance):

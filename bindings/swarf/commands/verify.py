@@ -78,7 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
                 pdf.find()
             except ValueError as error:
                 raise ValueError(f"{path}: {error}") from None
-    check_outputs(arguments.report, arguments.input)
+    check_outputs(arguments.report, (*inputs.files_read(arguments), arguments.design, arguments.limits, arguments.accept,
+                                     *arguments.fixture))
     if arguments.material is not None and arguments.limits is None:
         raise ValueError("--material chooses among the materials of a file of limits; give --limits FILE.json")
     limits = loads.merge({} if arguments.limits is None else loads.read(arguments.limits, arguments.material),
