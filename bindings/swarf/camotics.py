@@ -63,6 +63,11 @@ def read(
         text = stream.read()
     try:
         project = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise FormatError(f"{path}: is no CAMotics project: is no JSON: {error}") from None
+    try:
+        if not isinstance(project, dict):
+            raise ValueError("an object is wanted")
         files = project["files"]
         if len(files) != 1:
             raise ValueError(f"it has {len(files)} programs; one can be read")
@@ -72,7 +77,7 @@ def read(
         stock = _stock(project)
     except KeyError as error:
         raise FormatError(f"{path}: is no CAMotics project: it has no {error}") from None
-    except (ValueError, TypeError, AttributeError, RecursionError) as error:
+    except (ValueError, TypeError, AttributeError) as error:
         raise FormatError(f"{path}: is no CAMotics project: {error}") from None
     words = dict(options or {})
     known = {number: 2 * tool.radius() for number, tool in tools.items()}

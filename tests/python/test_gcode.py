@@ -189,8 +189,8 @@ def test_camotics_tools(changes, volume):
 @pytest.mark.parametrize(
     "text, says",
     [
-        ("{", "JSONDecodeError"),
-        ("[]", "TypeError"),
+        ("{", "is no JSON"),
+        ("[]", "an object is wanted"),
         ("{}", "files"),
         (json.dumps(project(shape="cube")), "'cube' is not known"),
         (json.dumps(project(diameter=-1)), "diameter: -1 is no positive length"),

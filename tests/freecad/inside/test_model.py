@@ -284,6 +284,26 @@ class TestModel(unittest.TestCase):
         self.assertEqual(len(self.obj.FaceColours), self.obj.Mesh.CountFacets)
         self.assertEqual(len(set(self.obj.FaceColours)), 2)
 
+    def test_what_cannot_be_written_leaves_what_was_there(self):
+        """Each suffix: onto a folder, into none, and a disk that is full half way."""
+        def fill(path):
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("half")
+            raise OSError(28, "No space left on device")
+
+        with open(self.path("good.step"), "w", encoding="utf-8") as file:
+            file.write("good")
+        with self.assertRaisesRegex(JobError, "good.step: cannot write: No space left"):
+            model.put(self.path("good.step"), fill)
+        with open(self.path("good.step"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), "good")
+        self.assertEqual(os.listdir(self.folder), ["good.step"])
+        for suffix in (".vdb", ".step", ".brep"):
+            os.mkdir(self.path("folder" + suffix))
+            for name, why in (("folder" + suffix, "it is not a regular file"), ("none/a" + suffix, "No such file")):
+                with self.assertRaisesRegex(JobError, "%s: cannot .*%s" % (name, why)):
+                    model.export(self.obj, self.path(name))
+
     def test_what_cannot_be(self):
         with self.assertRaisesRegex(JobError, "written as"):
             model.export(self.obj, self.path("part.dwg"))

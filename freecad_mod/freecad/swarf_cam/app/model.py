@@ -56,6 +56,22 @@ def estimate(obj, suffix, error_mm, coloured=False):
     return int(count), int(count * BYTES[suffix][bool(coloured)])
 
 
+def put(path, write):
+    """Write a file by write(its path) beside its place and put it there: a failure leaves what is there. JobError."""
+    place = os.path.realpath(path)
+    if os.path.exists(place) and not os.path.isfile(place):
+        raise JobError("%s: cannot be written: it is not a regular file" % path)
+    try:
+        with tempfile.TemporaryDirectory(prefix=".swarf-", dir=os.path.dirname(place)) as folder:
+            made = os.path.join(folder, "stock" + suffix_of(path))
+            write(made)
+            os.replace(made, place)
+    except OSError as error:
+        raise JobError("%s: cannot write: %s" % (path, error.strerror or error)) from error
+    except (Part.OCCError, RuntimeError) as error:  # FreeCAD's own name no file
+        raise JobError("%s: cannot write: %s" % (path, error)) from error
+
+
 class Export:
     """One export: prepared here, run() in any thread, finish() here again."""
 
@@ -71,7 +87,7 @@ class Export:
     def run(self, progress=None):
         """Number of triangles written (0: none). JobError, OSError, swarf.Error, swarf.Cancelled."""
         if self.suffix in STOCK_SUFFIXES:
-            shutil.copyfile(self.stock_file, self.path)
+            put(self.path, lambda made: shutil.copyfile(self.stock_file, made))
             return 0
         if self.data.moves is None:
             jobs.finish(self.data)
@@ -115,10 +131,7 @@ class Export:
             return
         try:
             shape = self._shape()
-            if self.suffix in (".brep", ".brp"):
-                shape.exportBrep(self.path)
-            else:
-                shape.exportStep(self.path)
+            put(self.path, shape.exportBrep if self.suffix in (".brep", ".brp") else shape.exportStep)
         finally:
             self.discard()
 
