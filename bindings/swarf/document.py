@@ -132,6 +132,10 @@ def finding_row(number: int, finding: Verdict) -> list[str]:
             str(finding.line or ""), Markup(f'<span class="place">{place}</span>'), Markup(text)]
 
 
+#: Of the volume of an operation; fewer thin layers are not worth a word.
+UNSEEN_SHARE = 0.01
+
+
 def operations(report: dict[str, Any]) -> str:
     """The table of operations: what each removed, and its peaks where loads were measured."""
     removed = report["removed_mm3_by_operation"]
@@ -149,11 +153,14 @@ def operations(report: dict[str, Any]) -> str:
                         f'{entry["peaks"][kind]["line"]}</span>') if kind in entry["peaks"] else "–" for kind in kinds]
         climb = "–" if entry["climb"] is None or "engagement" not in entry["peaks"] else f"{100 * entry['climb']:.0f} %"
         rows.append([entry["operation"], plots.clock(entry["seconds"]), f"{removed[entry['operation']]:,.1f}", climb, *peaks])
+    unseen = "; ".join(f"{html.escape(entry['operation'])} {entry['volume_unseen_mm3']:,.1f} of {entry['volume_mm3']:,.1f} mm³"
+                       for entry in entries if entry["volume_unseen_mm3"] > UNSEEN_SHARE * entry["volume_mm3"] > 0)
+    unseen = f" So was cut: {unseen}." if unseen else ""
     chips = "" if "chip" in kinds else " Chip thickness is not known: no tool tells its number of teeth."
     return table(heads, rows, range(1, len(heads))) + (
         "<p class=dim>The greatest loads of each operation and the line that makes them; engagement is that of moves "
         f"sideways. Climb: share of the volume that is cut in climb milling. Layers thinner than "
-        f"{0.35 * report['voxel_mm']:.2g} mm, a third of a voxel, are not seen: a load there is greater than told.{chips}</p>")
+        f"{0.35 * report['voxel_mm']:.2g} mm, a third of a voxel, are not seen: a load there is greater than told.{unseen}{chips}</p>")
 
 
 def load_plots(done: Verification, report: dict[str, Any]) -> str:

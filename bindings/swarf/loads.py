@@ -128,11 +128,13 @@ class Peak:
 @dataclass
 class Summary:
     """Loads of one operation: seconds of it in which material is cut, mm3, peaks by kind of KINDS, and the share of the
-    volume that was cut in climb milling (None: nothing was cut)."""
+    volume that was cut in climb milling (None: nothing was cut). ``unseen``: mm3 of the volume that were layers too thin
+    for their engagement to be seen; peaks leave them out."""
 
     seconds: float = 0.0
     cutting: float = 0.0
     volume: float = 0.0
+    unseen: float = 0.0
     peaks: dict[str, Peak] = field(default_factory=dict)
     climb: Optional[float] = None
 
@@ -166,7 +168,7 @@ def summaries(program: Program, loads: Mapping[str, memoryview], times: Sequence
     result = [Summary() for _ in program.operations]
     climbed = [0.0] * len(result)
     columns = [(kind, loads[KINDS[kind][0]]) for kind in KINDS]
-    volume, climb = loads["volume"], loads["climb"]
+    volume, climb, angle = loads["volume"], loads["climb"], loads["angle"]
     for move, (_, operation) in enumerate(_moves(program)):
         summary = result[operation]
         summary.seconds += times[move]
@@ -176,6 +178,7 @@ def summaries(program: Program, loads: Mapping[str, memoryview], times: Sequence
         climbed[operation] += volume[move] * 0.5 * (1 + climb[move])
         if loads["peak_rate"][move] > 0:
             summary.cutting += times[move]
+            summary.unseen += 0.0 if angle[move] > 0 else volume[move]
         for kind, column in columns:
             value = value_of(kind, column[move])
             if value > summary.peaks.get(kind, _NOTHING).value:

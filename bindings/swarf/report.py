@@ -181,6 +181,7 @@ def _loads(done: Verification, names: list[str]) -> dict[str, Any]:
             "seconds": part.seconds,
             "seconds_cutting": part.cutting,
             "volume_mm3": part.volume,
+            "volume_unseen_mm3": part.unseen,
             "climb": part.climb,
             "peaks": {kind: {"value": peak.value, "unit": loads.KINDS[kind][1], "move": peak.move,
                              "line": operation_of(done.result.job, peak.move)[1]}

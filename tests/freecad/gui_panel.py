@@ -268,6 +268,11 @@ class Watching(PanelTest):
         wait_for(lambda: german.view.frame is not None and german.view.frame.sharp, "the second panel's picture")
         screenshot("panel-german.png")
         self.check_numbers(german)
+        german.tabs.setCurrentWidget(german.findings)
+        wait_for(lambda: not german.checking.pending, "the second panel's checks")
+        assert any(item.text.startswith("zu tief: ") for item in german.checking.found), \
+            [item.text for item in german.checking.found]
+        screenshot("panel-german-findings.png")
         bar = german.tabs.tabBar()
         assert bar.tabRect(0).left() >= 0 and bar.tabRect(bar.count() - 1).right() <= german.tabs.width(), "a tab is hidden"
         assert german.width() < 800, "the dock takes too much of a small screen: %d" % german.width()
@@ -289,8 +294,13 @@ class Watching(PanelTest):
     @staticmethod
     def check_numbers(german):
         """They have commas, in labels as in spin boxes."""
+        from freecad.swarf_cam import native
         from freecad.swarf_cam.gui import numbers
 
+        amount = native.said("amount at least", value=0.125, area=2.5, volume=0.25)
+        assert numbers.in_words(native.said("gouge", amount=amount)) == \
+            "zu tief: mindestens 0,125 mm, 2,5 mm², 0,25 mm³ fehlen"
+        assert numbers.in_words("another") == "another"
         assert [numbers.text(-0.0001, 3, True), numbers.text(1234.5, 1), numbers.short(-0.2, True)] == \
             ["+0,000", "1234,5", "-0,2"]
         assert [numbers.text(1234567.891, 3), numbers.short(2.5e-7)] == ["1234567,891", "2,5e-07"], "in double precision"

@@ -1007,11 +1007,11 @@
         </message>
         <message>
             <source>a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; it was before the program began</source>
-            <translation>ein Stück von {volume:.4g} mm3 bei {x:.4g}; {y:.4g}; {z:.4g} ist lose; es war es schon vor dem Programm</translation>
+            <translation>ein Stück von {volume:.4g} mm³ bei {x:.4g}; {y:.4g}; {z:.4g} ist lose; es war es schon vor dem Programm</translation>
         </message>
         <message>
             <source>a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; this move frees it</source>
-            <translation>ein Stück von {volume:.4g} mm3 bei {x:.4g}; {y:.4g}; {z:.4g} ist lose; diese Bewegung trennt es ab</translation>
+            <translation>ein Stück von {volume:.4g} mm³ bei {x:.4g}; {y:.4g}; {z:.4g} ist lose; diese Bewegung trennt es ab</translation>
         </message>
         <message>
             <source>a solid is made of a closed mesh</source>
@@ -1047,7 +1047,7 @@
         </message>
         <message>
             <source>at least {value:.3f} mm, {area:.4g} mm2, {volume:.4g} mm3</source>
-            <translation>mindestens {value:.3f} mm, {area:.4g} mm2, {volume:.4g} mm3</translation>
+            <translation>mindestens {value:.3f} mm, {area:.4g} mm², {volume:.4g} mm³</translation>
         </message>
         <message>
             <source>axial depth</source>
@@ -1131,7 +1131,7 @@
         </message>
         <message>
             <source>its volume is off by {off:.3g} mm3</source>
-            <translation>sein Volumen weicht um {off:.3g} mm3 ab</translation>
+            <translation>sein Volumen weicht um {off:.3g} mm³ ab</translation>
         </message>
         <message>
             <source>m instead of mm</source>
@@ -1235,7 +1235,7 @@
         </message>
         <message>
             <source>the design is not closed: {open} open edges, {turned} between triangles turned different ways; the holes have at most {hole:.3g} mm2 and inside is told by the winding number</source>
-            <translation>das Modell ist nicht geschlossen: {open} offene Kanten, {turned} zwischen verschieden gewendeten Dreiecken; die Löcher haben höchstens {hole:.3g} mm2, und innen ist, was die Windungszahl so nennt</translation>
+            <translation>das Modell ist nicht geschlossen: {open} offene Kanten, {turned} zwischen verschieden gewendeten Dreiecken; die Löcher haben höchstens {hole:.3g} mm², und innen ist, was die Windungszahl so nennt</translation>
         </message>
         <message>
             <source>the design is {value:.4g} times as large as the stock: is it in {units}?</source>
@@ -1291,7 +1291,7 @@
         </message>
         <message>
             <source>{value:.3f} mm, {area:.4g} mm2, {volume:.4g} mm3</source>
-            <translation>{value:.3f} mm, {area:.4g} mm2, {volume:.4g} mm3</translation>
+            <translation>{value:.3f} mm, {area:.4g} mm², {volume:.4g} mm³</translation>
         </message>
     </context>
     <context>
