@@ -29,13 +29,10 @@ static const double met_again_cosine = 0.906;
 static const double on_surface = 1e-3, close_enough = 1e-4;
 /* From this far one step leads onto a face as well as many: it misses by the square of it over the face's radius. */
 static const double one_step = 0.02;
-/* After a round that is this good only the last one follows: it alone tells whether the faces are there, and takes
- * planes from several times as far. */
-static const double near_enough = 1e-3;
+/* After a round that moves the vertex by less only the last one follows: it alone tells whether the faces are there. */
+static const double settled = 1e-5;
 /* Vertices are moved into the cell by this much at most, so that they stay on their edge. */
 static const double allowed_outside = 0.01;
-/* Faces that meet farther outside than this as seen from a fifth of the way do not meet in the cell. */
-static const double hopeless = 0.25;
 
 /* Each crossing may be on a face of its own. */
 enum { MOST_FACES = 12 };
@@ -142,14 +139,6 @@ static double apart(const double a[3], const double b[3])
     return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
 }
 
-/* Whether a point that is as good as known lies so far out of the bounds that no further round leads into them. */
-static int leaves(const contour_bounds *bounds, const double x[3])
-{
-    int far = 0;
-    for (int k = 0; k < 3; k++) far |= x[k] < bounds->lo[k] - hopeless || x[k] > bounds->hi[k] + hopeless;
-    return far;
-}
-
 /* Where the chosen faces meet in the cell: the rank, or 1 when they do not. Planes from afar may lead out of the cell
  * though their faces meet in it, so that only the last round decides. */
 static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int count, double x[3])
@@ -158,28 +147,13 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
     const contour_bounds *bounds = &c->polygon->bounds;
     for (int i = 0; i < count; i++) planes[i] = chosen[i]->plane;
     int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, bounds, x), seen = 0, outside = 0;
-    const size_t last = sizeof approach / sizeof *approach - 1;
-    size_t left = 0; /* rounds that were done before others were left out */
-    double part = 1, before[3];
-    for (size_t round = 0; round <= last && rank > 1; round++) {
+    const size_t rounds = sizeof approach / sizeof *approach;
+    for (size_t round = 0; round < rounds && rank > 1; round++) {
         swarf_contour_clamp(bounds, x);
         const double about[3] = {x[0], x[1], x[2]};
         seen = take_again(c, chosen, count, x, approach[round], planes);
         rank = swarf_contour_meet(planes, count, about, least_eigenvalue, bounds, x);
-        if (round == last && left && !seen) { /* too early: go on after that round */
-            round = left - 1;
-            left = 0;
-            rank = 2;
-            memcpy(x, before, sizeof before);
-            continue;
-        }
-        if (round > 0 && seen && leaves(bounds, x)) return 1;
-        const double closer = approach[round] * approach[round] / (part * part), error = closer / (1 - closer);
-        part = approach[round];
-        if (!seen || left || round + 1 >= last || apart(x, about) * error * error > near_enough * near_enough) continue;
-        memcpy(before, x, sizeof before);
-        left = round + 1;
-        round = last - 1;
+        if (seen && apart(x, about) < settled * settled && round + 2 < rounds) round = rounds - 2;
     }
     for (int k = 0; k < 3; k++)
         outside |= x[k] < bounds->lo[k] - allowed_outside || x[k] > bounds->hi[k] + allowed_outside;
