@@ -30,6 +30,7 @@ class Verifying(PanelTest):
         index = next(index for index, item in enumerate(found)
                      if item.kind == "gouge" and listing.operations[item.operation].name == "Wave")
         assert tree.topLevelItem(index).text(1) == "Wave"
+        assert "mm²," in tree.topLevelItem(index).text(0) and "mm³" in tree.topLevelItem(index).text(0)
         assert {"gouge", "excess"} <= {item.kind for item in found}, [item.text for item in found]
         self.click_row(tree, lambda: tree.visualItemRect(tree.topLevelItem(index)))
         self.settle(found[index].place)

@@ -44,5 +44,5 @@ def size(count_of_bytes):
 
 
 def in_words(finding):
-    """A text of swarf's about a finding in the user's language, its numbers as all others."""
-    return wording.say(finding, _point())
+    """A text of swarf's about a finding in the user's language, its numbers and units as all others."""
+    return wording.say(finding, _point()).replace("mm2", "mm²").replace("mm3", "mm³")
