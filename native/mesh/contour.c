@@ -37,6 +37,14 @@ static swarf_status place_one(void *context, size_t index)
     return swarf_contour_is_within(work, block, 2) ? swarf_contour_place(work, block) : SWARF_OK;
 }
 
+static swarf_status unfold_one(void *context, size_t index)
+{
+    contour *work = context;
+    contour_block *block = &work->blocks[index];
+    block->changed = 0;
+    return swarf_contour_is_within(work, block, 1) ? swarf_contour_unfold(work, block) : SWARF_OK;
+}
+
 static swarf_status place_again(void *context, size_t index)
 {
     contour *work = context;
@@ -378,6 +386,8 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
     swarf_contour_table_fill(&work->table);
     SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, progress, 0, 0.3));
     SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, progress, 0.3, 0.6));
+    SWARF_TRY(swarf_parallel_for(work->block_count, unfold_one, work, NULL, 0, 1));
+    SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, NULL, 0, 1));
     for (size_t i = 0; i < work->block_count; i++) {
         const contour_block *block = &work->blocks[i];
         if (!swarf_contour_is_within(work, block, 0)) continue;

@@ -81,7 +81,7 @@ typedef struct contour_block {
     uint16_t inside[9][9];   /* signs of the corners of its cells, [x][y], bit z set: material */
     /* cells near facets that cut each other, each mask a part of the one before: */
     uint64_t keep_mask[8];   /* their vertices stay when others are left out */
-    uint64_t own_mask[8];    /* and lie in them, not beside */
+    uint64_t own_mask[8];    /* and lie in them, not beside; also those that swarf_contour_unfold() took back */
     uint64_t calm_mask[8];   /* and are where the surface is smooth, their quadrilaterals cut into four */
     uint64_t middle_mask[8]; /* and are in the middle of their crossings, which never cut each other */
     uint64_t noted_mask[8];  /* to go one further */
@@ -171,6 +171,9 @@ static inline int swarf_contour_is_within(const contour *work, const contour_blo
 /** The passes, one block each. */
 swarf_status swarf_contour_cross(contour *work, contour_block *block);
 swarf_status swarf_contour_place(contour *work, contour_block *block);
+/** Vertices beside their cells that fold a quadrilateral are to be placed again, in their cells: the block is then
+ *  `changed`. Reads those of the blocks about it. */
+swarf_status swarf_contour_unfold(contour *work, contour_block *block);
 swarf_status swarf_contour_tile(contour *work, contour_block *block);
 swarf_status swarf_contour_join(contour *work, contour_block *block);
 void swarf_contour_free(contour *work);

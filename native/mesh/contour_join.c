@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Last pass of contouring: a quadrilateral per crossing, or what tiles leave of it, as triangles. */
+/* Last pass of contouring: a quadrilateral per crossing, or what tiles leave of it, as triangles. Before it, a look at
+ * those about vertices that lie beside their cells. */
 #include "base/status.h"
 #include "mesh/contour.h"
 
@@ -85,6 +86,22 @@ static void put_facet(swarf_facet *facet, const contour_crossing *crossing, int 
     facet->beyond = facet->before = 0;
 }
 
+/* Vertices of the four cells round an edge, counter-clockwise seen against the axis; 0 when there are fewer. */
+static int find_corners(const contour *work, const contour_block *near, const int32_t voxel[3], int axis, corner q[4])
+{
+    static const int back[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    int found = 0;
+    for (int k = 0; k < 4; k++) found += find_corner(work, near, voxel, axis, back[k], &q[k]);
+    return found == 4;
+}
+
+/* The lesser cosine of the two triangles on a diagonal to the normal, which points along the axis. */
+static double least_facing(const corner q[4], int first, const double normal[3])
+{
+    return fmin(facing(q[first].at, q[first + 1].at, q[first + 2].at, normal),
+                facing(q[first].at, q[first + 2].at, q[(first + 3) % 4].at, normal));
+}
+
 /* Which diagonal cuts the quadrilateral: 0, 1, or -1 for all four triangles round its crossing. */
 static int choose_diagonal(const corner q[4], int axis, int outwards, const contour_crossing *crossing)
 {
@@ -92,9 +109,7 @@ static int choose_diagonal(const corner q[4], int axis, int outwards, const cont
         if (q[k].calm) return -1;
     double normal[3], least[2];
     for (int k = 0; k < 3; k++) normal[k] = outwards ? crossing->normal[k] : -(double)crossing->normal[k];
-    for (int d = 0; d < 2; d++)
-        least[d] = fmin(facing(q[d].at, q[d + 1].at, q[d + 2].at, normal),
-                        facing(q[d].at, q[d + 2].at, q[(d + 3) % 4].at, normal));
+    for (int d = 0; d < 2; d++) least[d] = least_facing(q, d, normal);
     const int meets[2] = {meets_edge(q, 0, axis), meets_edge(q, 1, axis)};
     int best = least[1] > least[0] + 1e-3;
     if (fabs(least[1] - least[0]) <= 1e-3) {
@@ -118,6 +133,37 @@ static int find_same(const corner q[4])
     return found;
 }
 
+/* Whether the quadrilateral of an edge is turned over, whichever diagonal cuts it. */
+static int is_folded(const contour *work, const contour_block *near, const int32_t voxel[3], int axis)
+{
+    corner q[4];
+    double normal[3];
+    const contour_crossing *crossing = swarf_contour_crossing(work, near, voxel, axis);
+    if (!crossing || !find_corners(work, near, voxel, axis, q)) return 0;
+    const double along = crossing->normal[axis] < 0 ? -1 : 1;
+    for (int k = 0; k < 3; k++) normal[k] = along * (double)crossing->normal[k];
+    return least_facing(q, 0, normal) <= 0 && least_facing(q, 1, normal) <= 0;
+}
+
+swarf_status swarf_contour_unfold(contour *work, contour_block *block)
+{
+    for (int x = 0; x < 8; x++)
+        for (uint64_t word = block->beside_mask[x]; word; word &= word - 1) {
+            const int bit = __builtin_ctzll(word);
+            int folded = 0;
+            for (int edge = 0; edge < 12 && !folded; edge++) {
+                const int axis = edge / 4;
+                int32_t voxel[3] = {block->ijk[0] + x, block->ijk[1] + (bit >> 3), block->ijk[2] + (bit & 7)};
+                voxel[(axis + 1) % 3] += edge >> 1 & 1;
+                voxel[(axis + 2) % 3] += edge & 1;
+                folded = is_folded(work, block, voxel, axis);
+            }
+            if (folded) block->own_mask[x] |= word & -word;
+            block->changed |= folded;
+        }
+    return SWARF_OK;
+}
+
 swarf_status swarf_contour_join(contour *work, contour_block *block)
 {
     free(block->facets);
@@ -131,7 +177,6 @@ swarf_status swarf_contour_join(contour *work, contour_block *block)
     block->facets = facets;
     block->centres = centres;
     if (!facets || !centres) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for facets");
-    static const int back[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}; /* counter-clockwise seen against the axis */
     const contour_crossing *crossing = block->crossings;
     for (int axis = 0; axis < 3; axis++)
         for (int x = 0; x < 8; x++)
@@ -140,9 +185,8 @@ swarf_status swarf_contour_join(contour *work, contour_block *block)
                 const int32_t voxel[3] = {block->ijk[0] + x, block->ijk[1] + (bit >> 3), block->ijk[2] + (bit & 7)};
                 const int outwards = block->inside[x][bit >> 3] >> (bit & 7) & 1;
                 corner q[4];
-                int found = 0;
-                for (int k = 0; k < 4; k++) found += find_corner(work, block, voxel, axis, back[k], &q[k]);
-                if (found < 4) continue; /* at the border of the layout: the mesh will be found open */
+                /* at the border of the layout: the mesh will be found open */
+                if (!find_corners(work, block, voxel, axis, q)) continue;
                 block->full_count += 2;
                 float error = 0;
                 for (int k = 0; k < 4; k++)

@@ -178,22 +178,13 @@ static int place_by_field(placing *p, const int at[3], contour_polygon *polygon,
     return swarf_contour_vertex(polygon, out);
 }
 
-/* Whether crossings touch a cell. */
-static int is_active(placing *p, const int at[3])
-{
-    const float *value = values_at(p, at);
-    int inside = 0;
-    for (int c = 0; c < 8; c++)
-        inside += value[(c >> 2) * SWARF_HALO * SWARF_HALO + (c >> 1 & 1) * SWARF_HALO + (c & 1)] < 0;
-    return inside > 0 && inside < 8;
-}
-
-/* Where faces meet in a cell beside this one that no crossing touches: there a wedge ends that is narrower than a
- * voxel, and no other vertex is there. Without this cell's vertex on it the edge would have a notch. Sets *rank where
- * they do, no farther than half a voxel from where they come nearest to the crossings: beyond, the edge is another
- * cell's. */
+/* Where faces meet in a cell beside this one: there a wedge ends that is narrower than a voxel. Without this cell's
+ * vertex on it the edge would have a notch, be it that no other vertex is there or that only other cells' are; where it
+ * folds what lies between them swarf_contour_unfold() takes it back. Sets *rank where they do, no farther than half a
+ * voxel from where they come nearest to the crossings: beyond, the edge is another cell's. */
 static swarf_status place_beside(placing *p, const int at[3], contour_polygon *polygon, double out[3], int *rank)
 {
+    enum { OWN = 13 }; /* of the 27 cells */
     const swarf_surface_near *near;
     const contour_bounds own = polygon->bounds;
     double free[3], least = farthest_along * farthest_along;
@@ -205,7 +196,6 @@ static swarf_status place_beside(placing *p, const int at[3], contour_polygon *p
     const int meeting = swarf_contour_vertex_exact(polygon, near, free) > 1;
     for (int n = 0; meeting && n < 27; n++) {
         const int way[3] = {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
-        const int there[3] = {at[0] + way[0], at[1] + way[1], at[2] + way[2]};
         double x[3], away = 0, nearest = 0;
         for (int k = 0; k < 3; k++) {
             polygon->bounds.lo[k] = own.lo[k] + way[k];
@@ -213,7 +203,7 @@ static swarf_status place_beside(placing *p, const int at[3], contour_polygon *p
             const double to = fmin(fmax(free[k], way[k]), way[k] + 1) - free[k];
             nearest += to * to;
         }
-        if (nearest >= least || is_active(p, there)) continue;
+        if (n == OWN || nearest >= least) continue;
         const int found = swarf_contour_vertex_exact(polygon, near, x);
         for (int k = 0; k < 3; k++) away += (x[k] - free[k]) * (x[k] - free[k]);
         if (found < 2 || away >= least) continue;

@@ -347,8 +347,8 @@ static swarf_program *make_program(const part *t)
  * cell, and for cutters that leave wedges of air or chip narrower than a voxel, in which no voxel's centre lies, and
  * which end more than a cell away from the next: points, sharp undercuts, threads. Twice what was seen with all
  * motions. */
-static const double beyond_allowed[CASE_CUTTERS] = {0.01, 0.01, 0.01, 0.12, 0.02, 0.08, 0.01,
-                                                    0.01, 0.04, 0.05, 0.11, 0.5,  0.02, 0.05};
+static const double beyond_allowed[CASE_CUTTERS] = {0.01, 0.01, 0.01, 0.04, 0.01, 0.02, 0.01,
+                                                    0.01, 0.04, 0.05, 0.1,  0.47, 0.02, 0.01};
 
 /* Simplified by an error, the mesh is within that of the true surface both ways. */
 static void check_reach(int index, const char *name, const part *truth, swarf_stock *stock,
