@@ -230,6 +230,10 @@ def test_command(stock, tmp_path, capsys):
     volumes = [swarf.Mesh.read(tmp_path / f"loose-{i}.stl").volume for i in (1, 2)]
     assert volumes == pytest.approx([9 * 48, 7 * 48], rel=1e-2)
     assert not (tmp_path / "loose-3.stl").exists() and not (tmp_path / "loose.stl").exists()
+    loose = str(tmp_path / "loose.step")
+    for words, files in ((["--split"], "loose-1.step to {}-2.step: facets"), ([], "loose.step: facets")):
+        assert main(["mesh", source, "--error", "0.05", *words, "--output", loose]) == 0
+        assert files.format(loose[:-5]) in capsys.readouterr().err
     assert main(["mesh", str(tmp_path / "loose-1.stl"), "--measure"]) == 0
     assert json.loads(capsys.readouterr().out)["contour"] is None
     assert main(["mesh", source, "--error", "0.01", "--budget", "9", "--measure"]) == 1

@@ -98,8 +98,8 @@ def is_solid(path: str) -> bool:
     return os.path.splitext(path)[1].lower() in solids.SUFFIXES
 
 
-def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> None:
-    """The mesh, or its parts, to all files."""
+def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> list[str]:
+    """The mesh, or its parts, to all files; returns those of solids, of many parts the first and the last."""
     several = arguments.split or bool(arguments.split_at)
     outputs = sorted(arguments.output, key=is_solid)  # solids last: they may be refused
     parts = parts_of(mesh, arguments)
@@ -114,6 +114,8 @@ def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> 
                 continue
             part.write(numbered(path, number) if several else path, colors=tints,
                        progress=lambda fraction: bar("write", fraction))
+    written = [path for path in outputs if is_solid(path) and parts]
+    return [in_a_row(path, len(parts)) for path in written] if several else written
 
 
 #: Why ``swarf mesh`` writes no faces as they were cut.
@@ -124,6 +126,11 @@ def numbered(path: str, number: int) -> str:
     """``part.3mf`` -> ``part-1.3mf``."""
     stem, suffix = os.path.splitext(path)
     return f"{stem}-{number}{suffix}"
+
+
+def in_a_row(path: str, count: int) -> str:
+    """The files of so many parts: ``part-1.step`` or ``part-1.step to part-3.step``."""
+    return numbered(path, 1) if count == 1 else f"{numbered(path, 1)} to {numbered(path, count)}"
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -143,6 +150,7 @@ def run(arguments: argparse.Namespace) -> int:
             raise ValueError(f"{path}: unknown suffix; a mesh is {', '.join(MESH_SUFFIXES + solids.SUFFIXES)}")
     _native.set_threads(arguments.threads)
     check_outputs(arguments.output, [arguments.input])
+    of_facets: list[str] = []
     with Bar() as bar:
         mesh, error = read(arguments, bar)
         if isinstance(mesh, _native.Stock) and is_streamed(arguments):
@@ -152,14 +160,13 @@ def run(arguments: argparse.Namespace) -> int:
             if isinstance(mesh, _native.Stock):
                 mesh = _native.Mesh.from_stock(mesh, error, budget=arguments.budget,
                                                progress=lambda fraction: bar("mesh", fraction))
-            write_parts(mesh, arguments, bar)
+            of_facets = write_parts(mesh, arguments, bar)
             made = mesh.contour
     if arguments.measure:
         json.dump(measures(mesh, arguments.thickness), sys.stdout, indent=2, allow_nan=False)
         print()
-    for path in arguments.output:
-        if is_solid(path):
-            print(f"swarf: note: {path}: facets, no faces as they were cut: {NO_PROGRAM}", file=sys.stderr)
+    for files in of_facets:
+        print(f"swarf: note: {files}: facets, no faces as they were cut: {NO_PROGRAM}", file=sys.stderr)
     if made is None:
         return DONE
     if made.intersections_left:
