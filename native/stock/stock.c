@@ -52,6 +52,9 @@ static swarf_status check_box(const swarf_box *box, double voxel)
         SWARF_REQUIRE(isfinite(box->lo[k]) && isfinite(box->hi[k]), "stock: the box is not finite in %c", "xyz"[k]);
         SWARF_REQUIRE(box->hi[k] > box->lo[k], "stock: the box is empty in %c (%g .. %g mm)", "xyz"[k], box -> lo[k],
                       box -> hi[k]);
+        SWARF_REQUIRE(box->lo[k] >= -farthest && box->hi[k] <= farthest,
+                      "stock: it reaches from %g to %g mm in %c; -%g to %g mm are possible", box->lo[k], box->hi[k],
+                      "xyz"[k], farthest, farthest);
     }
     return SWARF_OK;
 }
@@ -79,15 +82,12 @@ swarf_status swarf_stock_layout(const swarf_box *box, const swarf_stock_options 
         while (estimate(box, fitting) > limit && fitting < edge) fitting *= 1.05;
         return swarf_fail(
             SWARF_ERROR_MEMORY,
-            "stock: a voxel of %g mm may need %.3g GiB, %.3g GiB may be used; a voxel of %.2g mm or more fits", voxel,
+            "stock: a voxel of %g mm may need %.5g GiB, %.3g GiB may be used; a voxel of %.2g mm or more fits", voxel,
             wanted / 0x1p30, limit / 0x1p30, fitting * 1.05);
     }
     SWARF_REQUIRE(voxel >= least_voxel && voxel <= greatest_voxel, "stock: a voxel of %g mm; %g to %g mm are possible",
                   voxel, least_voxel, greatest_voxel);
     for (int k = 0; k < 3; k++) {
-        SWARF_REQUIRE(box->lo[k] >= -farthest && box->hi[k] <= farthest,
-                      "stock: it reaches from %g to %g mm in %c; -%g to %g mm are possible", box->lo[k], box->hi[k],
-                      "xyz"[k], farthest, farthest);
         /* a face within a billionth of a voxel of a whole number is that number */
         const double voxels = ceil((box->hi[k] - box->lo[k]) / voxel - 1e-9);
         const double nodes = ceil((voxels + 2 * PADDING) / SWARF_NODE_DIM);

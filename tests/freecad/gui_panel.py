@@ -194,7 +194,25 @@ class Watching(PanelTest):
         height = view.camera.height
         key(view, QtCore.Qt.Key_Plus, "+")
         assert not view.turning and view.camera.height < height
+        self.resizing()
         self.turn("0")
+
+    def resizing(self):
+        """In another size the whole stock is shown as before; who has zoomed keeps what there is."""
+        from freecad.swarf_cam.core import navigation
+
+        view = self.panel.view
+        size, whole = view.size(), lambda: navigation.shows_whole(view.camera, view.box, view.aspect())
+        self.turn("0")
+        assert whole()
+        view.resize(size.width() // 2, size.height())
+        assert whole(), "a narrow view shows the whole stock"
+        view.resize(size.width(), size.height() // 2)
+        assert whole(), "a low view shows the whole stock"
+        key(view, QtCore.Qt.Key_Plus, "+")
+        eye, height = view.camera.eye, view.camera.height
+        view.resize(size)
+        assert not whole() and (view.camera.eye, view.camera.height) == (eye, height)
 
     def origin(self):
         """The origin's axes and the outline of the stock as it was, by a setting."""

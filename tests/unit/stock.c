@@ -61,6 +61,8 @@ static void check_refused(void)
     CHECK_FAILS(swarf_stock_create_box(&box, &options, &stock), SWARF_ERROR_ARGUMENT, "y");
     box.hi[1] = INFINITY;
     CHECK_FAILS(swarf_stock_create_box(&box, &options, &stock), SWARF_ERROR_ARGUMENT, "finite");
+    box.hi[1] = 1e30; /* no voxel that is large enough is possible */
+    CHECK_FAILS(swarf_stock_create_box(&box, &options, &stock), SWARF_ERROR_ARGUMENT, "1e+30 mm in y; -1e+06 to 1e+06");
     CHECK_FAILS(swarf_stock_create_box(NULL, &options, &stock), SWARF_ERROR_ARGUMENT, NULL);
     CHECK_FAILS(swarf_stock_create_box(&cube, NULL, &stock), SWARF_ERROR_ARGUMENT, NULL);
     CHECK_FAILS(swarf_stock_create_box(&cube, &options, NULL), SWARF_ERROR_ARGUMENT, NULL);
@@ -78,10 +80,10 @@ static void check_refused(void)
     CHECK_FAILS(swarf_stock_create_box(&tiny, &options, &stock), SWARF_ERROR_ARGUMENT, "voxel of 1e-07 mm");
     options.voxel_mm = 1e300;
     CHECK_FAILS(swarf_stock_create_box(&cube, &options, &stock), SWARF_ERROR_ARGUMENT, "voxel of 1e+300 mm");
-    CHECK_FAILS(swarf_stock_create_box(&vast, &options, &stock), SWARF_ERROR_ARGUMENT, "voxel of 1e+300 mm");
+    CHECK_FAILS(swarf_stock_create_box(&vast, &options, &stock), SWARF_ERROR_ARGUMENT, "1e+300 mm in x");
     const swarf_box away = {{1e15, 0, 0}, {1.0001e15, 1, 1}};
     options.voxel_mm = 1e4;
-    CHECK_FAILS(swarf_stock_create_box(&away, &options, &stock), SWARF_ERROR_MEMORY, NULL);
+    CHECK_FAILS(swarf_stock_create_box(&away, &options, &stock), SWARF_ERROR_ARGUMENT, "in x");
     const swarf_box beyond = {{1e7, 0, 0}, {1e7 + 1, 1, 1}};
     options.voxel_mm = 0.1;
     CHECK_FAILS(swarf_stock_create_box(&beyond, &options, &stock), SWARF_ERROR_ARGUMENT, "in x");

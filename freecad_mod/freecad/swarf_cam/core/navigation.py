@@ -41,6 +41,9 @@ DEGREES_PER_PICTURE = 180.0
 WHEEL_FACTOR = 1.2
 KEY_DEGREES = 15.0
 
+# How large what is shown whole is, of as large as it could be.
+WHOLE = 0.9
+
 
 def action(style, buttons, modifiers):
     """What dragging does: ORBIT, PAN, ZOOM or NONE. style: FreeCAD's name of it, or its key here."""
@@ -50,6 +53,20 @@ def action(style, buttons, modifiers):
         if buttons == frozenset(held) and frozenset(keys) <= modifiers:
             return result
     return NONE
+
+
+def fit(camera, box, aspect):
+    """Show a box whole, from where the camera looks."""
+    camera.fit(box, aspect)
+    camera.zoom(WHOLE)
+
+
+def shows_whole(camera, box, aspect):
+    """Whether fit() would leave the camera as it is."""
+    fitted, near = camera.copy(), 1e-6 * math.dist(*box)
+    fit(fitted, box, aspect)
+    return (math.dist(camera.eye, fitted.eye) < near and math.dist(camera.target, fitted.target) < near
+            and abs(camera.height - fitted.height) < near)
 
 
 def direction(camera):

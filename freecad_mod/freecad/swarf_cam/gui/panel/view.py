@@ -70,8 +70,7 @@ class PictureView(QtWidgets.QWidget):
     def open(self, box):
         """Look at a new job's box."""
         self.box, self.frame, self._image, self.mark = box, None, None, None
-        self.camera = self._swarf.Camera.view("isometric", box, self.aspect(), perspective=settings.flag("Perspective"))
-        self.camera.zoom(0.9)
+        self.camera = self._seen_from("isometric", settings.flag("Perspective"))
         self.camera_changed.emit()
         self.update()
 
@@ -166,20 +165,23 @@ class PictureView(QtWidgets.QWidget):
         """A copy of the camera as it is, or will be when the view has turned."""
         return (self.camera if self._turn is None else self._turn[1]).copy()
 
+    def _seen_from(self, name, perspective):
+        """A camera that shows the whole stock from one of the seven views."""
+        camera = self._swarf.Camera.view(name, self.box, self.aspect(), perspective=perspective)
+        navigation.fit(camera, self.box, self.aspect())
+        return camera
+
     def fit(self):
         """The whole stock, from where one looks."""
         if self.camera is not None:
             target = self._heading()
-            target.fit(self.box, self.aspect())
-            target.zoom(0.9)
+            navigation.fit(target, self.box, self.aspect())
             self._turn_to(target)
 
     def look(self, name):
         """From one of the seven views."""
         if self.camera is not None:
-            target = self._swarf.Camera.view(name, self.box, self.aspect(), perspective=self.camera.perspective)
-            target.zoom(0.9)
-            self._turn_to(target)
+            self._turn_to(self._seen_from(name, self.camera.perspective))
 
     def fly_to(self, point):
         """Bring a point near, to the middle."""
@@ -219,10 +221,16 @@ class PictureView(QtWidgets.QWidget):
     # Qt's events
 
     def resizeEvent(self, event):
-        """Another size wants another picture."""
+        """Another size wants another picture; the whole stock stays in it where it was."""
         super().resizeEvent(event)
-        if self.camera is not None:
-            self._changed()
+        if self.camera is None:
+            return
+        target, before = self._heading(), event.oldSize()
+        if navigation.shows_whole(target, self.box, max(before.width(), 1) / max(before.height(), 1)):
+            navigation.fit(target, self.box, self.aspect())
+            self._stop_turning()
+            self.camera = target
+        self._changed()
 
     @staticmethod
     def _held(event):
