@@ -14,7 +14,7 @@ from typing import Optional, Sequence
 
 from . import _native
 from .commands import collect
-from .console import FAILED, Parser, one_line
+from .console import FAILED, Parser, discard, one_line
 
 
 def make_parser(commands: dict[str, ModuleType]) -> Parser:
@@ -40,10 +40,10 @@ def open_streams() -> None:
 
 
 def of_system(error: OSError) -> str:
-    """What the system says, as the library puts it: the file first. Only standard output has no name."""
+    """What the system says, as the library puts it: the file first, where it is known."""
     if error.strerror is None:
         return str(error) or type(error).__name__
-    return f"{'standard output' if error.filename is None else os.fsdecode(error.filename)}: {error.strerror}"
+    return error.strerror if error.filename is None else f"{os.fsdecode(error.filename)}: {error.strerror}"
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -60,5 +60,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         message = one_line(error) or type(error).__name__
     except KeyboardInterrupt:
         message = "interrupted"
-    print(f"swarf: error: {message}", file=sys.stderr)
+    try:
+        print(f"swarf: error: {message}", file=sys.stderr)
+    except OSError:  # the status alone must tell
+        discard(sys.stderr)
     return FAILED

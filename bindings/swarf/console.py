@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the subcommands share: exit statuses, the parser's class, checks of output files."""
+"""What the subcommands share: exit statuses, the parser's class, standard output, checks of output files."""
 from __future__ import annotations
 
 import argparse
 import os
+import sys
 import tempfile
-from typing import NoReturn, Optional, Sequence
+from typing import IO, Iterable, NoReturn, Optional, Sequence
 
 #: Exit statuses: done, done with findings of class error, could not run (one line on stderr says why).
 DONE, FINDINGS, FAILED = 0, 1, 2
@@ -16,6 +17,32 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(FAILED, f"swarf: error: {message}\n")
+
+    def _print_message(self, message: str, file: Optional[IO[str]] = None) -> None:
+        """Help and version are said as all else is: argparse itself swallows errors from Python 3.12 on."""
+        if file is sys.stdout:
+            say([message.rstrip("\n")])
+        else:
+            super()._print_message(message, file)
+
+
+def say(lines: Iterable[str]) -> None:
+    """Write lines to standard output, all of them at once: what is left in a buffer would fail when nobody looks any
+    more. OSError names standard output; a reader that has gone, e.g. head, has what it wanted."""
+    try:
+        sys.stdout.writelines(f"{line}\n" for line in lines)
+        sys.stdout.flush()
+    except OSError as error:
+        discard(sys.stdout)
+        if not isinstance(error, BrokenPipeError):
+            raise OSError(error.errno, error.strerror, "standard output") from None
+
+
+def discard(stream: IO[str]) -> None:
+    """Let a stream that cannot be written swallow what it still holds: Python would try again when it ends."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, stream.fileno())
+    os.close(null)
 
 
 def one_line(text: object) -> str:

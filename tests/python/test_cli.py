@@ -204,15 +204,46 @@ def test_no_words(swarf_run):
         assert status == 2 and err.startswith("swarf: error: ") and err.count("\n") == 1 and not out
 
 
-def test_streams_that_are_closed_or_full(launcher, program):
-    """Closed ones swallow what is said; one that is full is an error like all others."""
+def test_streams_that_are_closed_swallow_what_is_said(launcher, program):
     words = f"'{launcher}' simulate '{program}' --stock {STOCK} --tool {TOOL} --voxel 2"
     for line, status in ((f"{words} >&-", 0), (f"{words} <&- >&- 2>&-", 0), (f"{words} --voxel 0 2>&-", 2)):
         done = subprocess.run(["sh", "-c", line], capture_output=True, text=True, timeout=120, check=False)
         assert (done.returncode, done.stdout, done.stderr) == (status, "", ""), line
-    for line in (f"{words} --help", f"'{launcher}' moves '{program}'"):
-        done = subprocess.run(["sh", "-c", line + " > /dev/full"], capture_output=True, text=True, timeout=120, check=False)
-        assert (done.returncode, done.stderr) == (2, "swarf: error: standard output: No space left on device\n")
+
+
+@pytest.fixture(params=(False, True), ids=("buffered", "unbuffered"))
+def environment(request):
+    """That of a child whose standard output Python buffers, or not: buffered text fails only when it is flushed."""
+    made = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    return {**made, "PYTHONUNBUFFERED": "1"} if request.param else made
+
+
+def test_full_standard_output_is_an_error_like_all_others(launcher, program, tmp_path, environment):
+    swarf.Mesh.from_stock(swarf.Stock.box((0, 0, -10), (60, 40, 0), 2.0)).write(tmp_path / "block.stl")
+    (tmp_path / "wrong.nc").write_text("G1 X\n")
+    for words in ("--help", "--version", "simulate --help", "moves slot.nc", "mesh block.stl --measure", "check wrong.nc",
+                  f"verify slot.nc --stock {STOCK} --tool {TOOL} --voxel 2 --design block.stl"):
+        done = subprocess.run(["sh", "-c", f"exec '{launcher}' {words} > /dev/full"], cwd=tmp_path, env=environment,
+                              capture_output=True, text=True, timeout=120, check=False)
+        error = "swarf: error: standard output: No space left on device"
+        assert (done.returncode, done.stderr.splitlines()[-1:]) == (2, [error]), (words, done)
+        assert "Exception ignored" not in done.stderr, words
+    done = subprocess.run(["sh", "-c", f"exec '{launcher}' moves no.nc 2> /dev/full"], cwd=tmp_path, env=environment,
+                          timeout=120, check=False)
+    assert done.returncode == 2
+
+
+def test_a_reader_of_standard_output_that_has_gone_changes_nothing(launcher, program, tmp_path, environment):
+    (tmp_path / "wrong.nc").write_text("G1 X\n")
+    for words, status in ((["moves", "slot.nc"], 0), (["check", "wrong.nc"], 1), (["--help"], 0)):
+        read, write = os.pipe()
+        os.close(read)
+        try:
+            done = subprocess.run([launcher, *words], cwd=tmp_path, env=environment, stdout=write, stderr=subprocess.PIPE,
+                                  text=True, timeout=120, check=False)
+        finally:
+            os.close(write)
+        assert (done.returncode, done.stderr) == (status, ""), words
 
 
 def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, program, capsys):

@@ -7,7 +7,7 @@ from typing import Any
 
 from .. import gcode
 from .._native import Program
-from ..console import DONE, FINDINGS
+from ..console import DONE, FINDINGS, say
 from ..progress import Bar
 
 
@@ -31,7 +31,5 @@ def run(arguments: argparse.Namespace) -> int:
         notes = Program.check_gcode(
             arguments.input, progress=lambda fraction: bar("read", fraction), **gcode.options(arguments)
         )
-    for note in notes:
-        if note[0] != "message" or arguments.messages:
-            print(gcode.note_text(note))
+    say(gcode.note_text(note) for note in notes if note[0] != "message" or arguments.messages)
     return FINDINGS if any(note[0] == "error" for note in notes) else DONE

@@ -10,7 +10,7 @@ import sys
 from typing import Any, Optional
 
 from .. import _native, colours, solids
-from ..console import DONE, FINDINGS, check_outputs
+from ..console import DONE, FINDINGS, check_outputs, say
 from ..parts import PLANE_HELP, parse_plane, pieces, thinnest
 from ..progress import Bar
 from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES, streams
@@ -163,8 +163,7 @@ def run(arguments: argparse.Namespace) -> int:
             of_facets = write_parts(mesh, arguments, bar)
             made = mesh.contour
     if arguments.measure:
-        json.dump(measures(mesh, arguments.thickness), sys.stdout, indent=2, allow_nan=False)
-        print()
+        say([json.dumps(measures(mesh, arguments.thickness), indent=2, allow_nan=False)])
     for files in of_facets:
         print(f"swarf: note: {files}: facets, no faces as they were cut: {NO_PROGRAM}", file=sys.stderr)
     if made is None:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import os
-import sys
 from typing import Any
 
 from .. import gcode, readers
-from ..console import DONE
+from ..console import DONE, say
 from ..progress import Bar
 
 
@@ -31,10 +29,5 @@ def run(arguments: argparse.Namespace) -> int:
         job = readers.read(
             arguments.input, arguments.job, lambda fraction: bar("read", fraction), gcode.options(arguments)
         )
-    try:
-        for line in gcode.moves_text(job.program):
-            print(line)
-        sys.stdout.flush()
-    except BrokenPipeError:  # the reader, e.g. head, has what it wanted
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    say(gcode.moves_text(job.program))
     return DONE

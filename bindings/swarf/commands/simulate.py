@@ -9,7 +9,7 @@ import time
 from typing import Any
 
 from .. import colours, inputs, report, timing
-from ..console import DONE, FINDINGS, check_outputs, check_suffix, one_line
+from ..console import DONE, FINDINGS, check_outputs, check_suffix, one_line, say
 from ..progress import Bar
 from ..simulate import output_suffix, simulate
 
@@ -88,5 +88,5 @@ def run(arguments: argparse.Namespace) -> int:
         f"{finding.severity}: {f'{played.name}: ' if result.before else ''}line {finding.line}: {one_line(finding.text)}"
         for played, simulation in (*result.before, (job, result.simulation)) for finding in simulation.findings] + told)
     if sys.stdout.isatty():
-        print(report.summary(made))
+        say([report.summary(made)])
     return FINDINGS if result.failed else DONE

@@ -9,7 +9,7 @@ import time
 from typing import Any
 
 from .. import accept, document, inputs, loads, pdf, report
-from ..console import DONE, FINDINGS, check_outputs, one_line
+from ..console import DONE, FINDINGS, check_outputs, one_line, say
 from ..files import write_text
 from ..progress import Bar
 from ..verify import CAD_SUFFIXES, DESIGN_SUFFIXES, Verdict, read_design, verify
@@ -117,6 +117,6 @@ def run(arguments: argparse.Namespace) -> int:
                 report.write(made, path)
     inputs.print_notes(job)
     inputs.print_findings([finding_line(finding) for finding in done.findings])
-    print(f"{arguments.input}: {'passed' if done.passed else 'FAILED'}, tolerance +{done.tolerance[0]:g} "
-          f"-{done.tolerance[1]:g} mm, voxel {done.result.stock.voxel:g} mm")
+    say([f"{arguments.input}: {'passed' if done.passed else 'FAILED'}, tolerance +{done.tolerance[0]:g} "
+         f"-{done.tolerance[1]:g} mm, voxel {done.result.stock.voxel:g} mm"])
     return DONE if done.passed else FINDINGS
