@@ -19,7 +19,7 @@ from .records import MOVE
 from .progress import Report, share
 from .simulate import Progress, Result
 from .stocks import First, make_first
-from .wording import FORMS, Said
+from .wording import FORMS, Said, shortened
 
 #: What a design file can be, by its suffix.
 DESIGN_SUFFIXES = (".stl", ".ply", ".obj")
@@ -241,7 +241,7 @@ def check_text(found: CheckFinding, job: Job, clearance: float) -> str:
     """What is said of one, in words that can be translated."""
     keys = {"fixture": f"fixture {found.part}", "design": f"design {found.part}",
             "spindle": "spindle stopped" if found.severity == "error" else "spindle backwards",
-            "tool": "tool blunt" if found.tool in job.tools else "tool missing"}
+            "tool": "tool blunt" if found.tool in job.tools else "tool none" if found.tool < 0 else "tool missing"}
     key = keys.get(found.kind, found.kind)
     if key not in FORMS:  # of what is not asked for here: travel, plunges
         return found.text
@@ -251,7 +251,8 @@ def check_text(found: CheckFinding, job: Job, clearance: float) -> str:
 def uncut_text(found: Finding, job: Job) -> Said:
     """What is said of moves that were not simulated, in words that can be translated."""
     names = job.program.operations
-    return Said(f"uncut {found.kind}", operation=names[found.operation] if 0 <= found.operation < len(names) else "",
+    name = names[found.operation] if 0 <= found.operation < len(names) else ""
+    return Said(f"uncut {found.kind}", operation=shortened(name),
                 tool=found.tool, axis=found.axis, value=found.value)
 
 

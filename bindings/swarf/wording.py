@@ -26,6 +26,7 @@ FORMS = {
     "spindle stopped": "cuts with the spindle stopped",
     "spindle backwards": "cuts with the spindle turning backwards (M4)",
     "feed": "a feed move without feed",
+    "tool none": "moves before any tool is loaded",
     "tool missing": "tool T{tool} is not in the tool table",
     "tool blunt": "tool T{tool} has no flutes",
     # what was not simulated
@@ -101,6 +102,15 @@ FORMS = {
     "solid unsound": "FreeCAD finds the solid not valid",
     "volume off": "its volume is off by {off:.3g} mm3",
 }
+
+
+#: Bytes of UTF-8 that the library has room for in its texts, of an operation's name.
+MOST_NAME = 80
+
+
+def shortened(name: str) -> str:
+    """An operation's name as the library's texts have it."""
+    return name.encode("utf-8", "replace")[:MOST_NAME].decode("utf-8", "ignore")
 
 
 class Said(str):

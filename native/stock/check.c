@@ -472,8 +472,11 @@ static swarf_status play_batch(void *context, size_t first, size_t end, double f
         if (!path.has_motion) continue;
         if (!moving++ && (!tool || !tool->flutes->component_count)) {
             swarf_check_finding f = {.severity = SWARF_ERROR, .kind = SWARF_CHECK_TOOL};
-            snprintf(f.text, sizeof f.text, tool ? "tool T%d has no flutes" : "tool T%d is not in the tool table",
-                     (int)section->tool);
+            if (!tool && section->tool < 0)
+                snprintf(f.text, sizeof f.text, "moves before any tool is loaded");
+            else
+                snprintf(f.text, sizeof f.text, tool ? "tool T%d has no flutes" : "tool T%d is not in the tool table",
+                         (int)section->tool);
             SWARF_TRY(report(p, i, f));
         }
         SWARF_TRY(check_words(p, i, &path, tool));

@@ -25,6 +25,9 @@ struct swarf_simulation {
 /* No more moves than this at once: 100 MB of tracks and bins, while a batch is already as good as the whole. */
 enum { MOST_AT_ONCE = 1 << 18, WATCHED_AT_ONCE = 1 << 14 };
 
+/* Bytes of an operation's name that a finding has room for. */
+enum { MOST_NAME = 80 };
+
 struct player {
     swarf_stock *stock;
     const swarf_program *program;
@@ -126,6 +129,15 @@ static const char *operation_of(const struct player *player, const swarf_section
                : "";
 }
 
+/* Bytes of an operation's name that a text has: whole characters of UTF-8. */
+static int name_bytes(const char *name)
+{
+    size_t count = strlen(name);
+    if (count <= MOST_NAME) return (int)count;
+    for (count = MOST_NAME; count && ((unsigned char)name[count] & 0xC0) == 0x80;) count--;
+    return (int)count;
+}
+
 static swarf_status report_tool(struct player *player, size_t move, const swarf_section *section,
                                 swarf_finding_kind kind)
 {
@@ -135,10 +147,11 @@ static swarf_status report_tool(struct player *player, size_t move, const swarf_
     const char *operation = operation_of(player, section);
     if (section->tool < 0)
         snprintf(finding->text, sizeof finding->text,
-                 "operation '%.80s' moves before any tool is loaded; nothing was cut", operation);
+                 "operation '%.*s' moves before any tool is loaded; nothing was cut", name_bytes(operation), operation);
     else
-        snprintf(finding->text, sizeof finding->text, "operation '%.80s': tool T%d %s; nothing was cut", operation,
-                 (int)section->tool, kind == SWARF_FINDING_NO_FLUTES ? "has no flutes" : "is not in the tool table");
+        snprintf(finding->text, sizeof finding->text, "operation '%.*s': tool T%d %s; nothing was cut",
+                 name_bytes(operation), operation, (int)section->tool,
+                 kind == SWARF_FINDING_NO_FLUTES ? "has no flutes" : "is not in the tool table");
     return SWARF_OK;
 }
 
@@ -155,9 +168,10 @@ static swarf_status check_axes(struct player *player, size_t move, const swarf_s
     while (axis < 5 && from[axis] == 0.0 && to[axis] == 0.0) axis++;
     finding->axis = axis;
     finding->value = to[axis];
+    const char *operation = operation_of(player, section);
     snprintf(finding->text, sizeof finding->text,
-             "operation '%.80s': axis %c moves to %.6g; turned and shifted poses are not simulated, they cut nothing",
-             operation_of(player, section), "ABCUVW"[axis], to[axis]);
+             "operation '%.*s': axis %c moves to %.6g; turned and shifted poses are not simulated, they cut nothing",
+             name_bytes(operation), operation, "ABCUVW"[axis], to[axis]);
     return SWARF_OK;
 }
 
@@ -220,9 +234,10 @@ static swarf_status report_idle(struct player *player)
         if (player->cuts[i] == 0 || result->removed[i] > least) continue;
         swarf_finding *finding;
         SWARF_TRY(add_finding(player, SWARF_FINDING_IDLE, player->cuts[i] - 1, &finding));
+        const char *operation = swarf_program_operation_name(player->program, i);
         snprintf(finding->text, sizeof finding->text,
-                 "operation '%.80s' removes nothing: its moves do not meet what is left of the stock",
-                 swarf_program_operation_name(player->program, i));
+                 "operation '%.*s' removes nothing: its moves do not meet what is left of the stock",
+                 name_bytes(operation), operation);
     }
     return SWARF_OK;
 }

@@ -17,7 +17,7 @@ def wrong():
     program.add_operation("all wrong")
     for tool, spindle, points in (
             (1, "off", [("rapid", (20, 5, -1)), ("rapid", (22, 5, -1)), ("feed", (20, 5, -8)), ("feed", (30, 5, -8))]),
-            (1, "ccw", [("feed", (30, 5, -25))]), (9, "cw", [("feed", (40, 5, -25))]), (3, "cw", [("feed", (41, 5, 5))]),
+            (1, "ccw", [("feed", (30, 5, -25))]), (-1, "cw", [("feed", (31, 5, -25))]), (9, "cw", [("feed", (40, 5, -25))]), (3, "cw", [("feed", (41, 5, 5))]),
             (2, "cw", [("rapid", (70, 5, 5)), ("rapid", (70, 5, -19)), ("feed", (56, 5, -19)), ("feed", (56, 5, -30)),
                        ("feed", (10, 5, -30))])):
         program.set_section(tool=tool, spindle=spindle, spindle_rpm=100)
@@ -49,11 +49,34 @@ def test_checks_are_told_in_the_librarys_own_words():
         text = check_text(found, job, 1.5)
         assert text == found.text and isinstance(text, wording.Said)
         told[text.key] = text
-    assert {"start", "rapid", "shank", "holder", "depth", "spindle stopped", "spindle backwards", "feed", "tool missing",
-            "tool blunt", "fixture flutes", "fixture shank", "fixture holder", "design flutes",
+    assert {"start", "rapid", "shank", "holder", "depth", "spindle stopped", "spindle backwards", "feed", "tool none",
+            "tool missing", "tool blunt", "fixture flutes", "fixture shank", "fixture holder", "design flutes",
             "near"} <= set(told), sorted(told)
     assert all(uncut_text(found, job) == found.text for found in checked.simulation.findings)
-    assert {found.kind for found in checked.simulation.findings} == {"unknown tool", "no flutes"}
+    assert {found.kind for found in checked.simulation.findings} == {"no tool", "unknown tool", "no flutes"}
+
+
+def test_moves_without_a_tool_are_not_of_a_tool_minus_one():
+    bare = swarf.Program(start=(5, 5, 5))
+    bare.add_operation("bare")
+    bare.add_line((5, 5, -1), feed_mm_min=100)
+    job = job_of(bare)
+    job.stock = {"kind": "box", "lo": PLATE[0], "hi": PLATE[1]}
+    done = swarf.verify(job, cube(*PLATE), voxel=1.0, loads=False)
+    assert [found.text for found in done.findings if found.kind in ("tool", "uncut")] == ["moves before any tool is loaded"]
+
+
+def test_long_names_of_operations_are_cut_between_characters():
+    for name in ("ä" * 60, "x" + "ä" * 60, "xy" + "\u20ac" * 40, "x" * 77 + "\U0001f600", "x" * 80, "x" * 81, "x" * 79 + "ä"):
+        for tool, point, kind in ((-1, (9, 5, 5), "no tool"), (9, (9, 5, 5), "unknown tool"), (3, (9, 5, 5), "no flutes"),
+                                  (1, (9, 5, 50), "idle")):
+            program = swarf.Program(start=(5, 5, 50))
+            program.set_section(tool=tool, operation=program.add_operation(name))
+            program.add_line(point, feed_mm_min=100)
+            job = job_of(program)
+            (found,) = swarf.Stock.box(*PLATE, 2.0).simulate(job.program, job.tools).findings
+            assert found.kind == kind and uncut_text(found, job) == found.text and "\ufffd" not in found.text
+            assert (name in found.text) == (len(name.encode()) <= 80) and name[:20] in found.text
 
 
 def test_moves_that_are_not_simulated_are_told_in_the_librarys_own_words():

@@ -403,6 +403,7 @@ static void check_words(void)
     CHECK_OK(swarf_stock_check(j.stock, j.program, 0, 1, NULL, 0, NULL, NULL, &j.check));
     j.findings = swarf_check_findings(j.check, &j.count);
     CHECK(j.count == 1 && j.findings[0].kind == SWARF_CHECK_TOOL);
+    CHECK(strstr(j.findings[0].text, "T1 is not in the tool table") != NULL);
     swarf_check_destroy(j.check);
     j.check = NULL;
     swarf_check_options options = swarf_check_options_default();

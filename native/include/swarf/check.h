@@ -24,7 +24,7 @@ typedef enum swarf_check_kind {
     SWARF_CHECK_FEED,      /**< a feed move without feed */
     SWARF_CHECK_PLUNGE,    /**< a tool that cannot plunges */
     SWARF_CHECK_TRAVEL,    /**< beyond the travel of the machine */
-    SWARF_CHECK_TOOL,      /**< a tool that is not in the table, or has no flutes */
+    SWARF_CHECK_TOOL,      /**< no tool, one that is not in the table, or has no flutes */
     SWARF_CHECK_COUNT
 } swarf_check_kind;
 

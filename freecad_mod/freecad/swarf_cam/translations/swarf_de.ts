@@ -1158,6 +1158,10 @@
             <translation>mm statt m</translation>
         </message>
         <message>
+            <source>moves before any tool is loaded</source>
+            <translation>fährt, bevor ein Werkzeug geladen ist</translation>
+        </message>
+        <message>
             <source>not reached: {amount} left where no move went</source>
             <translation>nicht erreicht: {amount} übrig, wo keine Bewegung hinkam</translation>
         </message>
