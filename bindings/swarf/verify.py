@@ -158,7 +158,7 @@ def verify(
     started = time.perf_counter()
     solid = timed("design", lambda report: _solid(mesh, "design", report))
     fixtures = [*job.fixtures, *fixtures]
-    clamps = solids_of(fixtures, None if progress is None else lambda fraction: progress("design", fraction))
+    clamps = timed("fixtures", lambda report: solids_of(fixtures, report))
     earlier = SetUps(clearance)
     made_first = timed("stock", lambda report: make_first(
         job.stock, voxel=voxel, resolution=resolution, play=earlier.play, progress=report))

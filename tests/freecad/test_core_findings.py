@@ -95,6 +95,26 @@ def test_checks_can_be_broken_off(swarf):
             run(data, listing, progress=lambda done, limit=limit: done >= limit)
 
 
+def test_progress_does_not_run_backwards_where_there_are_fixtures(swarf, monkeypatch):
+    from swarf.verify import solids_of
+
+    scope = solids_of.__globals__  # of the module: swarf.verify is its function
+    real = scope["Solid"]
+
+    def solid(mesh, progress):  # as one of many triangles is made
+        for done in (0.0, 0.5, 1.0):
+            progress(done)
+        return real(mesh)
+
+    monkeypatch.setitem(scope, "Solid", solid)
+    for design in (None, box_mesh(LO, HI)):
+        data, listing = make(design)
+        data.fixtures = [("Clamp", box_mesh((x, 30.0, -10.0), (x + 5.0, 40.0, 10.0))) for x in (0.0, 30.0)]
+        told = []
+        run(data, listing, progress=told.append)
+        assert told == sorted(told) and told[-1] <= 1.0
+
+
 def test_another_tolerance_is_judged_without_cutting_again(swarf):
     from swarf_cam import checks
 

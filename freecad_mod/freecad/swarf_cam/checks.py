@@ -8,8 +8,8 @@ from typing import Any
 from . import native
 
 # Where each stage begins and how much of the whole it is, about.
-STAGES = {"design": (0.0, 0.05), "stock": (0.05, 0.15), "cut": (0.2, 0.55), "compare": (0.75, 0.2),
-          "loose": (0.95, 0.05)}
+STAGES = {"design": (0.0, 0.04), "fixtures": (0.04, 0.01), "stock": (0.05, 0.15), "cut": (0.2, 0.55),
+          "compare": (0.75, 0.2), "loose": (0.95, 0.05)}
 
 
 @dataclass
@@ -68,11 +68,11 @@ def _check(job, voxel_mm, doubts, report, stop, clearance_mm):
     from swarf.stocks import make_first
     from swarf.verify import SetUps, findings_of, fixture_findings, loose_findings, settle, solids_of
 
+    clamps = solids_of(job.fixtures, lambda done: report("fixtures", done))
     earlier = SetUps(clearance_mm)
     made = make_first(job.stock, voxel=voxel_mm, play=earlier.play, progress=lambda done: report("stock", done))
     stock = made.stock
     first = stock.copy() if not stop or job.design is None else None  # else swarf.verify() follows, and looks itself
-    clamps = solids_of(job.fixtures, lambda done: report("design", done))
     doubts += earlier.findings(made) + fixture_findings(stock, clamps)
     checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=clearance_mm, teeth=job.teeth, stop=stop,
                           progress=lambda done: report("cut", done))
