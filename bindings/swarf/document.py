@@ -159,8 +159,9 @@ def operations(report: dict[str, Any]) -> str:
     chips = "" if "chip" in kinds else " Chip thickness is not known: no tool tells its number of teeth."
     return table(heads, rows, range(1, len(heads))) + (
         "<p class=dim>The greatest loads of each operation and the line that makes them; engagement is that of moves "
-        f"sideways. Climb: share of the volume that is cut in climb milling. Layers thinner than "
-        f"{0.35 * report['voxel_mm']:.2g} mm, a third of a voxel, are not seen: a load there is greater than told.{unseen}{chips}</p>")
+        f"sideways. Climb: share of the volume that is cut in climb milling. Layers of "
+        f"about a voxel, {report['voxel_mm']:.2g} mm, and less may not be seen, nor what takes less than 20° of a tool's "
+        f"turn: a load there is greater than told.{unseen}{chips}</p>")
 
 
 def load_plots(done: Verification, report: dict[str, Any]) -> str:

@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import math
+import re
 import subprocess
 import sys
 
@@ -41,24 +42,29 @@ def test_a_slot_and_its_neighbour():
     assert math.isclose(again.simulation.volume_final, checked.simulation.volume_final, rel_tol=1e-9)
 
 
-def test_layers_too_thin_to_be_seen_are_no_layers_without_load():
-    """One is a fifth of a voxel thick: its volume is told as not seen, nothing of it as a peak of 0."""
+@pytest.mark.parametrize("diameter, thickness", [(6, 0.1), (6, 0.4), (1, 0.3)])
+def test_layers_too_thin_to_be_seen_are_no_layers_without_load(diameter, thickness):
+    """Below a voxel of 0.5 mm: its volume is told as not seen, nothing of it as a peak of 0, and the report speaks of
+    layers of that thickness."""
     program = swarf.Program(start=(-5, 10, 5))
-    for name, y, z in (("rough", 10, -1), ("fine", 20, -0.1)):
+    for name, y, z in (("rough", 10, -1.5), ("fine", 20, -thickness)):
         program.add_operation(name)
         program.set_section(tool=1, spindle="cw", spindle_rpm=8000)
         program.add_line((-5, y, 5), kind="rapid")
         program.add_line((-5, y, z), kind="rapid")
         program.add_line((65, y, z), feed_mm_min=600, line=1)
         program.add_line((65, y, 5), kind="rapid")
-    job = swarf.Job("thin", program, {1: swarf.Cutter("flat:d=6,l=20")}, stock={"kind": "box", "lo": LO, "hi": HI})
+    tools = {1: swarf.Cutter(f"flat:d={diameter},l=20")}
+    job = swarf.Job("thin", program, tools, stock={"kind": "box", "lo": LO, "hi": HI})
     done = swarf.verify(job, swarf.Mesh.from_stock(swarf.Stock.box(LO, HI, 1.0)), tolerance=2.0, voxel=0.5)
     made = report.make_verification(done, "thin.nc")
     rough, fine = made["loads"]["operations"]
     assert rough["volume_unseen_mm3"] < 0.01 * rough["volume_mm3"] and rough["peaks"]["engagement"]["value"] > 170
-    assert math.isclose(fine["volume_mm3"], (HI[0] - LO[0]) * 6 * 0.1, rel_tol=0.01)
+    assert math.isclose(fine["volume_mm3"], (HI[0] - LO[0]) * diameter * thickness, rel_tol=0.01)
     assert fine["volume_unseen_mm3"] == fine["volume_mm3"] and set(fine["peaks"]) == {"rate"}
-    assert f"So was cut: fine {fine['volume_mm3']:,.1f} of" in document.make(done, made)
+    text = document.make(done, made)
+    assert f"So was cut: fine {fine['volume_mm3']:,.1f} of" in text
+    assert float(re.search(r"Layers of about a voxel, (\S+) mm, and less", text)[1]) == 0.5
 
 
 def test_views_outlive_their_check():

@@ -13,10 +13,10 @@
  *
  * Rapids have no loads, only the volume that they remove. Between samples the ends of what lies in material are found
  * by bisection, to a hundredth of a voxel and as well as the stock is known there (faces: a hundredth of a voxel,
- * beside edges up to half of one). Not seen are layers thinner than 0.35 voxel, parts narrower than a sixty-fourth of
- * the turn (of plunges a thirty-second), and layers between samples along the axis (a voxel apart at the tip, a
- * twenty-fourth of the flutes' length farther up). Moments are two voxels or a quarter of the tool's radius apart;
- * moves shorter than that share them.
+ * beside edges up to half of one). Seen is what is deeper than 0.35 voxel at a sample; these are a sixty-fourth of the
+ * turn apart (of plunges a thirty-second), along the axis a voxel at the tip, a twenty-fourth of the flutes' length
+ * farther up. So layers under flat ends need 0.85 voxel, those on walls up to 1.2 or 9 degrees. Moments are two voxels
+ * or a quarter of the tool's radius apart; moves shorter than that share them.
  */
 #ifndef SWARF_LOAD_H
 #define SWARF_LOAD_H
