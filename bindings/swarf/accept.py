@@ -16,10 +16,11 @@ the part anew, and brings places along that nobody has looked at.
 """
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 from typing import Any, Optional, Sequence
+
+from .files import read_json
 
 KEYS = ("reason", "kind", "operation", "line", "text", "place", "within", "most", "tolerance", "allowance")
 
@@ -90,11 +91,7 @@ def make(entry: Any, where: str) -> Acceptance:
 
 def read(path: str) -> list[Acceptance]:
     """The acceptances of a JSON file. OSError; ValueError names the file, the entry and what is wrong."""
-    with open(path, encoding="utf-8") as stream:
-        try:
-            document = json.load(stream)
-        except (ValueError, RecursionError) as error:  # JSONDecodeError, what is no UTF-8, what is nested too deep
-            raise ValueError(f"{path}: is no JSON: {error}") from None
+    document = read_json(path)
     if not isinstance(document, list):
         raise ValueError(f"{path}: a list of acceptances is wanted")
     return [make(entry, f"{path}: acceptance {number}") for number, entry in enumerate(document, 1)]

@@ -2,12 +2,12 @@
 """CAMotics projects (.camotics, JSON): one program with its tools and its block of stock, for runs side by side."""
 from __future__ import annotations
 
-import json
 import math
 import os
 from typing import Any, Callable, Optional
 
 from ._native import Cutter, FormatError, Program
+from .files import read_json
 from .job import Job
 
 #: (r, z, bulge) nodes of a tool of radius r and length l; snub is the radius of a snub nose's tip.
@@ -59,12 +59,10 @@ def read(
     path: str, progress: Optional[Callable[[float], Any]] = None, options: Optional[dict[str, Any]] = None
 ) -> Job:
     """The Job of a project; ``options`` as of Program.read_gcode(). OSError; FormatError says what is wrong in it."""
-    with open(path, "rb") as stream:
-        text = stream.read()
     try:
-        project = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise FormatError(f"{path}: is no CAMotics project: is no JSON: {error}") from None
+        project = read_json(path)
+    except ValueError as error:
+        raise FormatError(str(error)) from None
     try:
         if not isinstance(project, dict):
             raise ValueError("an object is wanted")
@@ -83,4 +81,4 @@ def read(
     known = {number: 2 * tool.radius() for number, tool in tools.items()}
     words["diameters"] = {**known, **(words.get("diameters") or {})}
     program = Program.read_gcode(source, progress=progress, **words)
-    return Job(name=os.path.basename(path), program=program, tools=tools, tool_names=names, stock=stock)
+    return Job(name=os.path.basename(path), program=program, tools=tools, tool_names=names, stock=stock, files=[source])

@@ -1,9 +1,25 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Text files that are whole or not there."""
+"""Text files that are whole or not there, JSON files that are read."""
 from __future__ import annotations
 
+import json
 import os
 import tempfile
+from typing import Any
+
+
+def read_json(path: str) -> Any:
+    """What a JSON file holds. OSError has the file, ValueError begins with it."""
+    try:
+        with open(path, "rb") as stream:
+            text = stream.read()
+    except OSError as error:
+        error.filename = path  # reading tells none, only opening does
+        raise
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:  # JSONDecodeError, what is no UTF-8, what is nested too deep
+        raise ValueError(f"{path}: is no JSON: {error}") from None
 
 
 def write_text(text: str, path: str) -> None:

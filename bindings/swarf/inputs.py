@@ -13,6 +13,7 @@ from .console import one_line
 from .job import Job
 from .progress import Bar
 from .simulate import DEFAULT_RESOLUTION
+from .stocks import MOST_SET_UPS
 
 #: More findings than this are left to the report.
 FINDINGS_SHOWN = 20
@@ -70,6 +71,18 @@ def files_read(arguments: argparse.Namespace) -> list[Optional[str]]:
     """The files that these words name to be read, the input first; None for what is not given."""
     return [arguments.input, arguments.stock, arguments.tool_table, arguments.parameters,
             *(set_up.path for set_up in arguments.set_ups or ())]
+
+
+def files_of(job: Job) -> list[Optional[str]]:
+    """The files that a job, and the set-ups before it, were read from or will be, besides those of files_read()."""
+    found: list[Optional[str]] = []
+    for _ in range(MOST_SET_UPS):
+        stock = job.stock or {}
+        found += [*job.files, stock.get("path")]
+        if "job" not in stock:
+            break
+        job = stock["job"]
+    return found
 
 
 def set_threads(arguments: argparse.Namespace) -> None:

@@ -41,6 +41,7 @@ class Job:
     accepted: list[Acceptance] = field(default_factory=list)  #: findings that the job's document accepts
     fixtures: list[Mesh] = field(default_factory=list)  #: closed: clamps, a vice, the table
     teeth: dict[int, int] = field(default_factory=dict)  #: cutting edges around each tool, where they are known
+    files: list[str] = field(default_factory=list)  #: that it was read from besides the one that was asked for
 
 
 def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:

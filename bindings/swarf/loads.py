@@ -10,12 +10,12 @@ What is said of a tool goes before what is said of all, what is said of the mate
 """
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass, field
 from typing import Any, Iterable, Mapping, Optional, Sequence
 
 from ._native import Program
+from .files import read_json
 from .records import MOVE, SECTION, section_and_kind
 from .wording import Said
 
@@ -84,11 +84,7 @@ def parse(word: str) -> Limits:
 
 def read(path: str, material: Optional[str] = None) -> Limits:
     """Limits in a file, for a material. OSError; ValueError names the file and what is wrong."""
-    with open(path, encoding="utf-8") as stream:
-        try:
-            document = json.load(stream)
-        except (ValueError, RecursionError) as error:  # JSONDecodeError, what is no UTF-8, what is nested too deep
-            raise ValueError(f"{path}: is no JSON: {error}") from None
+    document = read_json(path)
 
     def part(entry: Any, of: str, more: tuple[str, ...] = ()) -> Limits:
         if not isinstance(entry, dict) or not set(entry) <= {"all", "tools", *more}:

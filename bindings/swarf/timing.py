@@ -8,11 +8,11 @@ The file is JSON with any of the keywords of Program.times(), e.g.::
 """
 from __future__ import annotations
 
-import json
 import math
 from typing import Any, Optional
 
 from ._native import Program
+from .files import read_json
 from .records import MOVE, SECTION, section_and_kind
 
 KEYS = ("rapid_mm_min", "feed_mm_min", "acceleration_mm_s2", "junction_mm", "rotary_deg_min", "tool_change_s")
@@ -23,11 +23,7 @@ BY_AXIS = KEYS[:3]
 
 def read_machine(path: str) -> dict[str, Any]:
     """Keywords of Program.times() from a file. OSError; ValueError names the file and what is wrong."""
-    with open(path, encoding="utf-8") as stream:
-        try:
-            limits = json.load(stream)
-        except ValueError as error:  # JSONDecodeError and what is no UTF-8
-            raise ValueError(f"{path}: is no JSON: {error}") from None
+    limits = read_json(path)
     if not isinstance(limits, dict):
         raise ValueError(f"{path}: wanted an object with {', '.join(KEYS)}")
     for key, value in limits.items():

@@ -158,7 +158,7 @@ def verify(
     started = time.perf_counter()
     solid = timed("design", lambda report: _solid(mesh, "design", report))
     fixtures = [*job.fixtures, *fixtures]
-    clamps = timed("fixtures", lambda report: solids_of(fixtures, report))
+    clamps = timed("fixtures", lambda report: solids_of(fixtures, report, len(job.fixtures)))
     earlier = SetUps(clearance)
     made_first = timed("stock", lambda report: make_first(
         job.stock, voxel=voxel, resolution=resolution, play=earlier.play, progress=report))
@@ -175,7 +175,7 @@ def verify(
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits, region=region)
     found = [*earlier.findings(made_first), *findings_of(job, checked, stock.voxel, clearance), *_load_findings(job, checked, limits),
-             *_design_findings(solid, first, mesh), *fixture_findings(first, clamps),
+             *_design_findings(solid, first, mesh), *fixture_findings(first, clamps, len(job.fixtures)),
              *timed("loose", lambda report: loose_findings(job, stock, first, report)),
              *(_cluster_finding(made, cluster) for cluster in deviation.clusters)]
     made.findings = settle(found, [*job.accepted, *accept])
@@ -218,7 +218,10 @@ class SetUps:
 
     def play(self, job: Job, stock: Stock, progress: Report = None) -> Simulation:
         """Play a job on its stock. What Stock.check() raises."""
-        clamps = solids_of(job.fixtures, share(progress, 0, 0.1))
+        try:
+            clamps = solids_of(job.fixtures, share(progress, 0, 0.1))
+        except GeometryError as error:
+            raise GeometryError(f"set-up '{job.name}': {error}") from None
         doubts = fixture_findings(stock, clamps)
         checked = stock.check(job.program, job.tools, fixtures=clamps, clearance=self._clearance, teeth=job.teeth,
                               progress=share(progress, 0.1, 1))
@@ -324,10 +327,17 @@ def place_text(kind: str, value: float, factor: float, first: Stock, mesh: Mesh)
     return Said(f"place {kind}", value=value)
 
 
-def solids_of(meshes: Sequence[Mesh], progress: Report = None) -> list[Solid]:
-    """Solids of meshes, fixtures. Cancelled, what Solid() raises."""
-    return [_solid(mesh, f"fixture {number + 1}", share(progress, number / len(meshes), (number + 1) / len(meshes)))
+def solids_of(meshes: Sequence[Mesh], progress: Report = None, own: Optional[int] = None) -> list[Solid]:
+    """Solids of meshes, fixtures, of which the first ``own`` (None: all) are the job's. Cancelled, what Solid() raises."""
+    return [_solid(mesh, _fixture(number, own), share(progress, number / len(meshes), (number + 1) / len(meshes)))
             for number, mesh in enumerate(meshes)]
+
+
+def _fixture(number: int, own: Optional[int]) -> Said:
+    """Which fixture it is, to whoever gave it: the job's and those given besides count from 1 each."""
+    if own is None or number < own:
+        return Said("fixture of job", number=number + 1)
+    return Said("fixture given", number=number - own + 1)
 
 
 def _solid(mesh: Mesh, what: str, progress: Report) -> Solid:
@@ -338,14 +348,15 @@ def _solid(mesh: Mesh, what: str, progress: Report) -> Solid:
         raise GeometryError(f"{what}: {error}") from None
 
 
-def fixture_findings(first: Stock, solids: Sequence[Solid]) -> list[Verdict]:
-    """Fixtures that reach into the stock before anything is cut: they stand elsewhere, or the stock does."""
+def fixture_findings(first: Stock, solids: Sequence[Solid], own: Optional[int] = None) -> list[Verdict]:
+    """Fixtures that reach into the stock before anything is cut: they stand elsewhere, or the stock does. ``own`` as of
+    solids_of()."""
     found = []
-    for number, solid in enumerate(solids, 1):
+    for number, solid in enumerate(solids):
         depth, place = compare_overlap(first, solid)
         if depth > 0.35 * first.voxel:
-            found.append(Verdict("warning", Said("fixture inside", number=number, depth=depth), "fixture", place=place,
-                                 amount=depth, at_least=True))
+            found.append(Verdict("warning", Said("fixture inside", fixture=_fixture(number, own), depth=depth), "fixture",
+                                 place=place, amount=depth, at_least=True))
     return found
 
 

@@ -52,7 +52,9 @@ FORMS = {
                    "holes have at most {hole:.3g} mm2 and inside is told by the winding number",
     "design crossing": "{crossing} of the design's {all} triangles cross or touch others; it is taken as the union of "
                        "what they enclose",
-    "fixture inside": "fixture {number} reaches into the stock before anything is cut, at least {depth:.3g} mm deep: "
+    "fixture of job": "fixture {number} of the job",
+    "fixture given": "fixture {number}",
+    "fixture inside": "{fixture} reaches into the stock before anything is cut, at least {depth:.3g} mm deep: "
                       "fixture or stock are not where they should be",
     # the deviation
     "amount": "{value:.3f} mm, {area:.4g} mm2, {volume:.4g} mm3",

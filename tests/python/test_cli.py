@@ -10,6 +10,7 @@ import time
 import pytest
 
 import swarf
+from swarf import readers
 from conftest import GCODE, SLOT_MM3
 from swarf.cli import main
 
@@ -198,6 +199,31 @@ def test_outputs_are_checked_first(refused, program, tmp_path, words, says):
     refused(program, "--stock", STOCK, "--tool", TOOL, "--voxel", "0.005", *words, says=says)
 
 
+def test_outputs_do_not_replace_what_a_project_or_a_document_reads(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "program.json").write_text(GCODE)
+    (tmp_path / "project.camotics").write_text(json.dumps({
+        "files": ["program.json"], "tools": {"1": {"diameter": 6, "length": 20}},
+        "workpiece": {"bounds": {"min": [0, 0, -10], "max": [60, 40, 0]}}}))
+    stock = swarf.Stock.box((0, 0, -10), (60, 40, 0), 2.0)
+    stock.write("kept.vdb")
+    swarf.Mesh.from_stock(stock).write("part.stl")
+    files = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    words = ["project.camotics", "--resolution", "30", "--report", "./program.json"]
+    for command in (["simulate", *words], ["verify", *words, "--design", "part.stl"]):
+        assert main(command) == 2 and "program.json: is read, too" in capsys.readouterr().err
+
+    def read(path, job=None, progress=None):
+        first = swarf.Job("first", swarf.Program.parse_gcode(GCODE), {1: swarf.Cutter("flat:d=6,l=20")},
+                          stock={"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)})
+        return swarf.Job("then", first.program, first.tools, stock={"kind": "result", "job": first, "path": "kept.vdb"})
+
+    monkeypatch.setattr(readers, "readers", lambda: {".part": type("Entry", (), {"value": "", "load": lambda self: read})()})
+    assert main(["simulate", "a.part", "--output", str(tmp_path / "kept.vdb")]) == 2
+    assert "kept.vdb: is read, too" in capsys.readouterr().err
+    assert files == {path: path.read_bytes() for path in tmp_path.iterdir()}
+
+
 def test_no_words(swarf_run):
     for words in ((), ("simulate",), ("mill",), ("simulate", "a.nc", "--nonsense")):
         status, out, err = swarf_run(*words)
@@ -252,6 +278,7 @@ def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, prog
     (tmp_path / "no.camotics").write_text("{}")
     (tmp_path / "no.var").write_text("this is no parameter\n")
     (tmp_path / "empty.var").write_text("\n")
+    (tmp_path / "deep.json").write_text("[" * 100000)
     (tmp_path / "open.stl").write_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
                                        "endloop\nendfacet\nendsolid\n")
     part = str(tmp_path / "part-1.stl")
@@ -264,6 +291,8 @@ def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, prog
             (["simulate", str(tmp_path / "folder.camotics")], "folder.camotics: Is a directory"),
             (["simulate", str(tmp_path / "no.camotics")], "is no CAMotics project: it has no 'files'"),
             (["simulate", *cut, "--parameters", str(tmp_path / "no.var")], "no.var: no line of it is a parameter"),
+            (["simulate", *cut, "--machine", str(tmp_path / "deep.json")], "deep.json: is no JSON: "),
+            ([*held, "--accept", "/proc/self/mem"], "swarf: error: /proc/self/mem: "),
             (["verify", *cut, "--design", str(tmp_path / "open.stl")], "design: mesh: not closed"),
             ([*held, "--fixture", part, "--fixture", str(tmp_path / "open.stl")], "fixture 2: mesh: not closed"),
             ([*held, "--allowance", "1e300"], "an allowance of 1e+300 mm; -1e+06 to 1e+06 are possible"),

@@ -300,6 +300,22 @@ def test_verify_reads_gcode_as_it_is_told(tmp_path):
     assert command(tmp_path, lines, "--block-delete", "--complete").returncode == 1
 
 
+def test_fixtures_that_are_not_closed_are_told_by_who_gave_them():
+    job = faced(1.0)
+    bare = swarf.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    clamp = box((40.0, 0.0, -9.0), (50.0, 30.0, -4.0))
+    for own, given, says in (([clamp], [clamp, bare], "fixture 2: mesh: not closed"),
+                             ([clamp, bare], [clamp], "fixture 2 of the job: mesh: not closed")):
+        job.fixtures = own
+        with pytest.raises(swarf.GeometryError, match=f"^{says}"):
+            swarf.verify(job, DESIGN, voxel=1.0, loads=False, fixtures=given)
+    job.fixtures, before = [], faced(1.0)
+    before.name, before.fixtures = "before", [clamp, bare]
+    job.stock = {"kind": "result", "job": before}
+    with pytest.raises(swarf.GeometryError, match="^set-up 'before': fixture 2 of the job: mesh: not closed"):
+        swarf.verify(job, DESIGN, voxel=1.0, loads=False)
+
+
 def test_fixtures_in_the_stock():
     job = faced(1.0)
     inside = swarf.verify(job, DESIGN, voxel=0.5, loads=False, fixtures=[box((38.0, 10.0, -9.0), (50.0, 20.0, -4.0))])
@@ -307,6 +323,11 @@ def test_fixtures_in_the_stock():
                for found in inside.findings)
     around = swarf.verify(job, DESIGN, voxel=0.5, loads=False, fixtures=[box((-50, -50, -60), (90, 90, -2.0))])
     assert any("fixture 1 reaches into the stock" in found.text for found in around.findings)
+    job.fixtures = [box((38.0, 10.0, -9.0), (50.0, 20.0, -4.0))] * 2
+    both = swarf.verify(job, DESIGN, voxel=0.5, loads=False, fixtures=job.fixtures[:1])
+    assert [found.text.partition(" reaches")[0] for found in both.findings if "reaches" in found.text] == [
+        "fixture 1 of the job", "fixture 2 of the job", "fixture 1"]
+    job.fixtures = []
     beside = swarf.verify(job, DESIGN, voxel=0.5, loads=False, fixtures=[box((40.0, 0.0, -9.0), (50.0, 30.0, -4.0))])
     assert not beside.findings
 

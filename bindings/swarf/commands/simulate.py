@@ -44,8 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
         output_suffix(path)
     check_suffix(arguments.picture, "picture", ".png")
     check_suffix(arguments.report, "report", ".json")
-    check_outputs((*arguments.output, arguments.picture, arguments.report),
-                  (*inputs.files_read(arguments), arguments.machine))
+    outputs, sources = (*arguments.output, arguments.picture, arguments.report), inputs.files_read(arguments)
+    check_outputs(outputs, (*sources, arguments.machine))
     if not (math.isfinite(arguments.tolerance) and arguments.tolerance > 0):
         raise ValueError(f"tolerance {arguments.tolerance:g}: wanted a number above 0")
     if not math.isfinite(arguments.allowance):
@@ -54,6 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     with Bar() as bar:
         started = time.perf_counter()
         job = inputs.read_job(arguments, bar)
+        check_outputs(outputs, (*sources, *inputs.files_of(job)))
         seconds_read = time.perf_counter() - started
 
         result = simulate(

@@ -78,8 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
                 pdf.find()
             except ValueError as error:
                 raise ValueError(f"{path}: {error}") from None
-    check_outputs(arguments.report, (*inputs.files_read(arguments), arguments.design, arguments.limits, arguments.accept,
-                                     *arguments.fixture))
+    sources = inputs.files_read(arguments)
+    check_outputs(arguments.report, (*sources, arguments.design, arguments.limits, arguments.accept, *arguments.fixture))
     if arguments.material is not None and arguments.limits is None:
         raise ValueError("--material chooses among the materials of a file of limits; give --limits FILE.json")
     limits = loads.merge({} if arguments.limits is None else loads.read(arguments.limits, arguments.material),
@@ -95,6 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
         design = None if arguments.design is None else read_design(
             arguments.design, tightest, lambda fraction: bar("read", fraction))
         job = inputs.read_job(arguments, bar)
+        check_outputs(arguments.report, (*sources, *inputs.files_of(job)))
         if design is None and job.design is None:
             raise ValueError(f"{arguments.input}: it has no design to verify against; give --design FILE")
         seconds_read = time.perf_counter() - started

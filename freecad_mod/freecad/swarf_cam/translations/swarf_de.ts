@@ -1078,8 +1078,12 @@
             <translation>Eingriff</translation>
         </message>
         <message>
-            <source>fixture {number} reaches into the stock before anything is cut, at least {depth:.3g} mm deep: fixture or stock are not where they should be</source>
-            <translation>Spannmittel {number} ragt in das Rohteil, bevor etwas geschnitten ist, mindestens {depth:.3g} mm tief: Spannmittel oder Rohteil sind nicht, wo sie sein sollten</translation>
+            <source>fixture {number}</source>
+            <translation>Spannmittel {number}</translation>
+        </message>
+        <message>
+            <source>fixture {number} of the job</source>
+            <translation>Spannmittel {number} des Auftrags</translation>
         </message>
         <message>
             <source>flutes cut into the design, {depth:.3g} mm deep</source>
@@ -1280,6 +1284,10 @@
         <message>
             <source>{crossing} of the design's {all} triangles cross or touch others; it is taken as the union of what they enclose</source>
             <translation>{crossing} der {all} Dreiecke des Modells schneiden oder berühren andere; es gilt als Vereinigung dessen, was sie umschließen</translation>
+        </message>
+        <message>
+            <source>{fixture} reaches into the stock before anything is cut, at least {depth:.3g} mm deep: fixture or stock are not where they should be</source>
+            <translation>{fixture} ragt in das Rohteil, bevor etwas geschnitten ist, mindestens {depth:.3g} mm tief: Spannmittel oder Rohteil sind nicht, wo sie sein sollten</translation>
         </message>
         <message>
             <source>{load} {value:.4g} {unit} exceeds the limit of {most:g} {unit}</source>
