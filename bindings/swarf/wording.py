@@ -117,13 +117,16 @@ def shortened(name: str) -> str:
 
 class Said(str):
     """A sentence in English that can be said in another language: ``key`` of FORMS, ``values`` of it, which may hold
-    others. A text like any other."""
+    others. A text like any other. TypeError where there is no such sentence, as of a function that is called wrongly."""
 
     key: str
     values: dict[str, Any]
 
     def __new__(cls, key: str, **values: Any) -> Said:
-        self = super().__new__(cls, FORMS[key].format(**values))
+        try:
+            self = super().__new__(cls, FORMS[key].format(**values))
+        except LookupError as error:
+            raise TypeError(f"no sentence {key!r} of {', '.join(values) or 'no values'}: {error} is missing") from None
         self.key, self.values = key, values
         return self
 

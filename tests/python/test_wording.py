@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What is said of findings: the library's own words, and the same in another language."""
+import ast
 import copy
+import pathlib
 import pickle
 import string
 
+import pytest
+
 import swarf
-from swarf import wording
+from swarf import loads, wording
 from swarf.job import Job
 from swarf.verify import check_text, place_text, uncut_text
 
@@ -26,8 +30,8 @@ def wrong():
     return program
 
 
-def cube(lo, hi):
-    return swarf.Mesh.from_stock(swarf.Stock.box(lo, hi, 1.0))
+def cube(lo, hi, voxel=1.0):
+    return swarf.Mesh.from_stock(swarf.Stock.box(lo, hi, voxel))
 
 
 def job_of(program):
@@ -94,11 +98,21 @@ def test_moves_that_are_not_simulated_are_told_in_the_librarys_own_words():
 
 def test_places_of_designs_are_told_in_the_librarys_own_words():
     first = swarf.Stock.box(*PLATE, 1.0)
-    for lo, hi, key in (((100, 0, -10), (160, 40, 0), "beside"), ((0, 0, -10), (60, 40, 20), "out"),
-                        ((0, 0, -10), (1524, 1016, 254), "unit")):
-        mesh = swarf.Mesh.from_stock(swarf.Stock.box(lo, hi, max(hi) / 30))
-        kind, value, factor, text = swarf.compare_place(first, swarf.Solid(mesh))
-        assert kind == key and place_text(kind, value, factor, first, mesh) == text
+    gone = swarf.Stock.box(*PLATE, 2.0)
+    plunge = swarf.Program(start=(30, 20, 5))
+    plunge.add_line((30, 20, -30), feed_mm_min=100)
+    gone.cut(swarf.Cutter("flat:d=200,l=50"), plunge)
+    scaled = [((0, 0, 0), (60 * factor, 40 * factor, 10 * factor), "unit", first)
+              for factor in (25.4, 1 / 25.4, 10.0, 0.1, 1000.0, 0.001)]
+    told = set()
+    for lo, hi, key, stock in (((100, 0, -10), (160, 40, 0), "beside", first), ((0, 0, -10), (60, 40, 20), "out", first),
+                               ((0, 0, -10), (60, 40, 0), "empty", gone), *scaled):
+        mesh = cube(lo, hi, max(hi) / 30)
+        kind, value, factor, text = swarf.compare_place(stock, swarf.Solid(mesh))
+        said = place_text(kind, value, factor, stock, mesh)
+        assert kind == key and said == text
+        told.add(said.values.get("units"))
+    assert len(told) == 7  # six of units, and none
 
 
 def test_another_language_has_the_same_values():
@@ -111,6 +125,43 @@ def test_another_language_has_the_same_values():
     for copied in (copy.deepcopy(said), pickle.loads(pickle.dumps(said))):
         assert copied == said and (copied.key, copied.values) == (said.key, said.values)
     assert wording.Said("set-up", job="{x}", text=said).translated(lambda form: form) == f"set-up '{{x}}': {said}"
+
+
+def sentences(path):
+    """(key, names of the values or None: not to be seen) of the sentences that a file says by their keys."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if not isinstance(node, ast.Call):
+            continue
+        called = getattr(node.func, "attr", getattr(node.func, "id", None))
+        names = {keyword.arg for keyword in node.keywords}
+        if called in ("Said", "said") or (called == "fail" and path.name == "brep.py"):
+            keys = node.args[:1]
+        elif called == "solve" and path.name == "brep.py":
+            keys, names = node.args[2:], {"x", "y", "z"}
+        else:
+            continue
+        for key in (part for arg in keys for part in ([arg.body, arg.orelse] if isinstance(arg, ast.IfExp) else [arg])):
+            if isinstance(key, ast.Constant):
+                yield key.value, None if None in names else names
+
+
+def test_all_that_is_said_has_a_form():
+    sources = pathlib.Path(__file__).parents[2]
+    said = [(path.name, *found) for folder in ("bindings/swarf", "freecad_mod/freecad")
+            for path in sorted((sources / folder).rglob("*.py")) for found in sentences(path)]
+    assert len(said) > 30 and {name for name, *_ in said} >= {"brep.py", "regions.py", "verify.py", "loose.py", "model.py"}
+    for name, key, values in said:
+        assert key in wording.FORMS, (name, key)
+        wanted = {field for _, field, _, _ in string.Formatter().parse(wording.FORMS[key]) if field}
+        assert values is None or wanted <= values, (name, key, wanted - values)
+    assert all(entry[-1] in wording.FORMS for entry in loads.KINDS.values())
+
+
+def test_what_has_no_form_is_no_lookup_error():
+    """Those have meanings: brep takes one for borders that do not lead on."""
+    for key, values in (("no such", {}), ("hit", {"depth": 1.0}), ("rapid", {})):
+        with pytest.raises(TypeError, match=f"no sentence {key!r}"):
+            wording.Said(key, **values)
 
 
 def test_no_two_sentences_are_one():
