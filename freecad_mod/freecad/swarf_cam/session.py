@@ -165,6 +165,11 @@ class Session:
                 findings.append((float(max(item.move, 0)), item.severity, native.text_of(item, self.job)))
         return Overview(list(done.removed_by_operation), done.volume_initial, done.volume_final, findings)
 
+    @property
+    def at(self):
+        """Where the stock stands."""
+        return self._playback.at
+
     def step(self, place, seconds, progress=None):
         """Go towards a place, for about so many seconds; where it stands then."""
         return self._playback.step(place, seconds, progress)
@@ -272,24 +277,20 @@ class Session:
         index = min(int(place), count - 1)
         return self.data.moves.sections[int(self.data.moves.row(index)[2])][0]
 
-    def pick(self, view, x, y, place):
+    def pick(self, view, x, y, place, progress=None):
         """Picked at a place of the picture (x to the right, y upwards, -1 .. 1) of the stock as it is at a place, or
-        None where nothing is. Goes back to where it was."""
+        None where nothing is. Stays there."""
         if view.shown == DESIGN:
             return None
-        home = self._playback.at
-        try:
-            self._go(place)
-            found = self._current_scene().pick(view.camera, x, y, view.width, view.height,
-                                               sections=dict(view.look).get("sections") or None)
-        finally:
-            self._go(home)
+        self._go(place, progress)
+        found = self._current_scene().pick(view.camera, x, y, view.width, view.height,
+                                           sections=dict(view.look).get("sections") or None)
         if found is None or found.seen != "stock":
             return None
-        move = found.move if found.move >= 0 else self._maker(found.point, int(place))
+        move = found.move if found.move >= 0 else self._maker(found.point, int(place), progress)
         result = Picked(found.point, found.normal, depth_below_top=self.box[1][2] - found.point[2],
                         slope_deg=math.degrees(math.acos(min(max(found.normal[2], -1.0), 1.0))))
-        design = self._solid()
+        design = self._solid(progress)
         if design is not None:
             result.deviation = design.distance([found.point])[0] - view.allowance_mm
         if move >= 0:
@@ -303,7 +304,7 @@ class Session:
         while self._playback.at != place:
             self.step(place, 0.1, progress)
 
-    def _maker(self, point, place):
+    def _maker(self, point, place, progress):
         """The last of the moves before a place that takes something from a tiny block about a point of the surface:
         no move takes more than up to the surface. -1 when none does."""
         if not place:
@@ -311,26 +312,23 @@ class Session:
         reach = (PROBE_REACH_EXACT if self._exact else PROBE_REACH) * self.voxel_mm
         block = self._swarf.Stock.box([value - reach for value in point], [value + reach for value in point],
                                       PROBE_VOXEL * reach)
-        done = block.simulate(self.program, self.tools, first=0, count=place, batch=1, removed_per_move=True)
+        done = block.simulate(self.program, self.tools, first=0, count=place, batch=1, removed_per_move=True,
+                              progress=progress)
         taken = done.removed_per_move
         return next((index for index in range(place - 1, -1, -1) if taken[index] > 0.0), -1)
 
     def write_png(self, path, view, place, progress=None):
-        """The picture as good as it gets, to a file."""
+        """The picture of the stock as it is at a place, as good as it gets, to a file. Stays there."""
+        self._go(place, progress)
         if view.shown == STOCK:
             self._picture(view, place, progress, samples=SAMPLES)[0].write(path)
         else:
             pixels.write_png(path, view.width, view.height, self._compose(view, place, progress, samples=SAMPLES)[0])
 
     def write_frames(self, folder, view, places, progress=None, on_frame=None):
-        """The stock at each of some places as frame-00000.png ... -> number of files. Goes back to where it was."""
-        home = self._playback.at
-        try:
-            for number, place in enumerate(places):
-                self._go(place, progress)
-                self.write_png(os.path.join(folder, "frame-%05d.png" % number), view, place, progress)
-                if on_frame:
-                    on_frame((number + 1) / len(places))
-        finally:
-            self._go(home)
+        """The stock at each of some places as frame-00000.png ... -> number of files. Stays at the last."""
+        for number, place in enumerate(places):
+            self.write_png(os.path.join(folder, "frame-%05d.png" % number), view, place, progress)
+            if on_frame:
+                on_frame((number + 1) / len(places))
         return len(places)

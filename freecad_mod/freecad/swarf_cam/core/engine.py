@@ -41,8 +41,9 @@ class Engine:
     """open_session(progress) -> the session that cuts and draws; listener has opened(session), frame(frame),
     progress(fraction), failed(error) and finished(), which comes last.
 
-    A session has step(place, seconds, progress) -> place it stands at, and draw(view, place, budget_ms, progress, rays)
-    -> frame, budget_ms None for all the time it takes. Both raise cancelled_type when a progress answered true.
+    A session has at, the place it stands at, step(place, seconds, progress) -> at, and draw(view, place, budget_ms,
+    progress, rays) -> frame, budget_ms None for all the time it takes. Both raise cancelled_type when a progress answered
+    true. What is called may leave it anywhere: it goes on from there to the place that is wished.
     """
 
     def __init__(self, open_session, listener, cancelled_type):
@@ -122,6 +123,8 @@ class Engine:
                 revision, place, view = self._revision, self._place, self._view
             if call:
                 self._do(session, call)
+                if session.at != at:
+                    at, drawn = session.at, -1
                 continue
             if revision == drawn and rest == 0 and self._wait_for_rest(revision):
                 continue

@@ -30,7 +30,8 @@ class Picking:
             return
         if panel.transport.playing:
             panel.player.seek(frame.place)
-        panel.opening.call(lambda session, progress: session.pick(frame.view, x, y, frame.place), self._answered)
+        panel.opening.call(lambda session, progress: session.pick(frame.view, x, y, frame.place, progress),
+                           self._answered)
 
     def _answered(self, found, error):
         panel = self._panel
