@@ -149,8 +149,8 @@ class Excess:
     def text(self) -> Said:
         """What is wrong, for people."""
         _, unit, name = KINDS[self.kind]
-        return Said("load" if self.count == 1 else "loads", load=Said(name), value=self.value, unit=unit, most=self.most,
-                    count=self.count)
+        return Said("load" if self.count == 1 else "loads", load=Said(name), value=self.value, unit=Said(unit),
+                    most=self.most, count=self.count)
 
 
 def _moves(program: Program) -> Iterable[tuple[int, int]]:

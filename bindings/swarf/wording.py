@@ -72,6 +72,9 @@ FORMS = {
     "radial width": "radial width",
     "chip thickness": "chip thickness",
     "removal rate": "removal rate",
+    "deg": "deg",
+    "mm": "mm",
+    "mm3/s": "mm3/s",
     # pieces
     "loose": "a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; this move frees it",
     "loose before": "a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; it was before the program began",

@@ -318,6 +318,8 @@ class Watching(PanelTest):
         amount = native.said("amount at least", value=0.125, area=2.5, volume=0.25)
         assert numbers.in_words(native.said("gouge", amount=amount)) == \
             "zu tief: mindestens 0,125 mm, 2,5 mm², 0,25 mm³ fehlen"
+        kept = native.said("set-up kept", job="30 mm3", path="/tmp/30 mm2.vdb")
+        assert all(name in numbers.in_words(kept) for name in kept.values.values()), "the user's own names"
         assert numbers.in_words("another") == "another"
         assert [numbers.text(-0.0001, 3, True), numbers.text(1234.5, 1), numbers.short(-0.2, True)] == \
             ["+0,000", "1234,5", "-0,2"]

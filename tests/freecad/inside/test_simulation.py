@@ -5,12 +5,13 @@ import math
 import os
 import tempfile
 import unittest
+import unittest.mock
 
 import FreeCAD
 import samples
 from freecad.swarf_cam import native
 from freecad.swarf_cam.app import job as jobs
-from freecad.swarf_cam.app import simulation
+from freecad.swarf_cam.app import simulation, wording
 from freecad.swarf_cam.core.errors import JobError
 
 VOXEL = 0.5
@@ -65,6 +66,23 @@ class TestSimulation(unittest.TestCase):
         self.assertTrue(obj.Mesh.isSolid())
         self.assertAlmostEqual(obj.Mesh.Volume, 8000 - SLOT, delta=20)
         self.assertGreater(os.path.getsize(obj.Stock), 1000)
+
+    def test_findings_are_kept_in_english(self):
+        obj = self.make()
+        self.operation().Path = samples.path_of("G0 X-5 Y10 Z5", "G1 X45 F10")
+        self.document.recompute()
+        with unittest.mock.patch.object(wording, "translate", lambda context, text: text.upper()):
+            simulation.simulate(obj)
+        self.assertEqual(len(obj.Findings), 1)
+        self.assertRegex(obj.Findings[0], "^note: operation 'Slot', command .*: operation 'Slot' removes nothing")
+
+    def test_units_are_written_out_and_names_are_left_alone(self):
+        amount = native.said("amount", value=0.125, area=2.5, volume=0.25)
+        self.assertEqual(wording.say(native.said("gouge", amount=amount)), "gouge: 0.125 mm, 2.5 mm², 0.25 mm³ missing")
+        kept = native.said("set-up kept", job="30 mm3", path="/tmp/30 mm2.vdb")
+        self.assertEqual(wording.say(kept), str(kept))
+        load = native.said("load", load=native.said("removal rate"), value=9.5, unit=native.said("mm3/s"), most=9)
+        self.assertEqual(wording.say(load, ","), "removal rate 9,5 mm³/s exceeds the limit of 9 mm³/s")
 
     def test_progress_and_cancel_leave_the_object_as_it_was(self):
         obj = self.make()

@@ -45,4 +45,4 @@ def size(count_of_bytes):
 
 def in_words(finding):
     """A text of swarf's about a finding in the user's language, its numbers and units as all others."""
-    return wording.say(finding, _point()).replace("mm2", "mm²").replace("mm3", "mm³")
+    return wording.say(finding, _point())

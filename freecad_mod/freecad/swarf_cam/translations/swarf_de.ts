@@ -974,14 +974,6 @@
             <source>{0} voxels along the longest edge, up to {1}</source>
             <translation>{0} Voxel entlang der längsten Kante, bis zu {1}</translation>
         </message>
-        <message>
-            <source>{severity}: job '{job}', operation '{operation}', command {number}: {text}</source>
-            <translation>{severity}: Auftrag „{job}“, Operation „{operation}“, Befehl {number}: {text}</translation>
-        </message>
-        <message>
-            <source>{severity}: operation '{operation}', command {number}: {text}</source>
-            <translation>{severity}: Operation „{operation}“, Befehl {number}: {text}</translation>
-        </message>
     </context>
     <context>
         <name>SwarfFinding</name>
@@ -1074,8 +1066,12 @@
             <translation>schneidet mit rückwärts drehender Spindel (M4)</translation>
         </message>
         <message>
+            <source>deg</source>
+            <translation>°</translation>
+        </message>
+        <message>
             <source>engagement</source>
-            <translation>Eingriff</translation>
+            <translation>Eingriffswinkel</translation>
         </message>
         <message>
             <source>fixture {number}</source>
@@ -1150,6 +1146,10 @@
             <translation>Material übrig: {amount}; der nächste Schnitt bleibt {away:.3f} mm entfernt</translation>
         </message>
         <message>
+            <source>mm</source>
+            <translation>mm</translation>
+        </message>
+        <message>
             <source>mm instead of cm</source>
             <translation>mm statt cm</translation>
         </message>
@@ -1160,6 +1160,10 @@
         <message>
             <source>mm instead of m</source>
             <translation>mm statt m</translation>
+        </message>
+        <message>
+            <source>mm3/s</source>
+            <translation>mm³/s</translation>
         </message>
         <message>
             <source>moves before any tool is loaded</source>
