@@ -40,7 +40,7 @@ swarf_status swarf_parameters_set(swarf_parameters *parameters, const char *name
 void swarf_parameters_leave(swarf_parameters *parameters, size_t base);
 
 /** Read a LinuxCNC parameter file: two columns, number and value; lines of another form are left out. Places in it are
- *  in units of `unit_mm`, afterwards in mm. */
+ *  in units of `unit_mm`, afterwards in mm. SWARF_ERROR_FORMAT: it has lines, but none with a parameter. */
 swarf_status swarf_parameters_read(swarf_parameters *parameters, const char *path, double unit_mm);
 
 #endif

@@ -385,9 +385,9 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
     const stage s = {work, options, progress, facets, &memo, &known, report};
     swarf_contour_table_fill(&work->table);
     SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, progress, 0, 0.3));
-    SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, progress, 0.3, 0.6));
-    SWARF_TRY(swarf_parallel_for(work->block_count, unfold_one, work, NULL, 0, 1));
-    SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, NULL, 0, 1));
+    SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, progress, 0.3, 0.56));
+    SWARF_TRY(swarf_parallel_for(work->block_count, unfold_one, work, progress, 0.56, 0.58));
+    SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, progress, 0.58, 0.6));
     for (size_t i = 0; i < work->block_count; i++) {
         const contour_block *block = &work->blocks[i];
         if (!swarf_contour_is_within(work, block, 0)) continue;

@@ -97,14 +97,16 @@ static swarf_status look(adding *a, const swarf_progress *progress, double from,
                              to);
 }
 
-/** Begin with squares that have `side` sights along an edge. */
-static swarf_status begin(swarf_detail *detail, size_t squares, int32_t side)
+/** Begin with these squares and `side` sights along an edge of each. */
+static swarf_status begin(swarf_detail *detail, size_t first, size_t squares, int32_t side)
 {
-    if (detail->side == side) return SWARF_OK;
+    if (detail->side == side && detail->first == first && detail->squares == squares) return SWARF_OK;
     swarf_detail_forget(detail);
     detail->slot = malloc(squares * sizeof *detail->slot);
     if (!detail->slot) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory");
     for (size_t i = 0; i < squares; i++) detail->slot[i] = -1;
+    detail->first = first;
+    detail->squares = squares;
     detail->side = side;
     return SWARF_OK;
 }
@@ -115,9 +117,10 @@ swarf_status swarf_detail_add(swarf_detail *detail, const swarf_canvas *canvas, 
     const size_t first = swarf_canvas_at(canvas, 0, top), last = swarf_canvas_at(canvas, 0, end);
     const int32_t side = canvas->options->samples;
     const size_t each = (size_t)side * (size_t)side;
-    SWARF_TRY(begin(detail, (size_t)canvas->width * (size_t)canvas->height, side));
+    SWARF_TRY(begin(detail, first, last - first, side));
     adding a = {.canvas = canvas, .side = side};
-    for (size_t i = first; i < last; i++) a.count += is_marked[i] && detail->slot[i] < 0;
+    int32_t *const slot = detail->slot;
+    for (size_t i = first; i < last; i++) a.count += is_marked[i] && slot[i - first] < 0;
     if (a.count == 0) return SWARF_OK;
     SWARF_TRY(swarf_array_reserve((void **)&detail->sight, &detail->room, detail->count + a.count,
                                   each * sizeof *detail->sight));
@@ -125,14 +128,19 @@ swarf_status swarf_detail_add(swarf_detail *detail, const swarf_canvas *canvas, 
     if (!squares) return swarf_fail(SWARF_ERROR_MEMORY, "picture: out of memory for samples");
     size_t listed = 0;
     for (size_t i = first; i < last; i++)
-        if (is_marked[i] && detail->slot[i] < 0) squares[listed++] = i;
+        if (is_marked[i] && slot[i - first] < 0) squares[listed++] = i;
     a.square = squares;
     a.sight = detail->sight + detail->count * each;
     const swarf_status status = look(&a, progress, from, to);
-    for (size_t i = 0; status == SWARF_OK && i < a.count; i++) detail->slot[squares[i]] = (int32_t)(detail->count + i);
+    for (size_t i = 0; status == SWARF_OK && i < a.count; i++) slot[squares[i] - first] = (int32_t)(detail->count + i);
     if (status == SWARF_OK) detail->count += a.count;
     free(squares);
     return status;
+}
+
+const swarf_sight *swarf_detail_of(const swarf_detail *detail, size_t square)
+{
+    return detail->sight + (size_t)detail->slot[square - detail->first] * (size_t)detail->side * (size_t)detail->side;
 }
 
 void swarf_detail_forget(swarf_detail *detail)

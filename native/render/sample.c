@@ -19,8 +19,8 @@
  * The window is of the samples about those of one square, as many of either side. */
 enum { MARGIN = 2, SIDE_MAX = 4, REACH_MAX = 2, WINDOW_MAX = SIDE_MAX + 4 * REACH_MAX };
 
-/* The samples of a whole picture are kept for the next one when they need no more than this. Those of larger ones are
- * made and left again in strips of so many rows. */
+/* The samples of a whole picture are kept for the next one when they need no more than this (their list may have room
+ * for twice as many). Those of larger ones are made and left again in strips of so many rows. */
 enum { KEPT_BYTES_MAX = 128 << 20, STRIP = 64 };
 
 /* One face: neighbours' normals differ by at most 2.5 degrees, and each lies in the plane of the other to 1 in 20 of
@@ -153,16 +153,13 @@ static void open_window(const resolving *r, int32_t x, int32_t y, int32_t reach,
                         const swarf_sight *window[WINDOW_MAX][WINDOW_MAX])
 {
     const swarf_canvas *c = r->canvas;
-    const swarf_detail *detail = c->detail;
     const int32_t n = c->options->samples;
     for (int32_t dy = -MARGIN; dy <= MARGIN; dy++)
         for (int32_t dx = -MARGIN; dx <= MARGIN; dx++) {
             const int is_out = x + dx < 0 || y + dy < 0 || x + dx >= c->width || y + dy >= c->height;
             const size_t at = is_out ? 0 : swarf_canvas_at(c, x + dx, y + dy);
             const int is_fine = !is_out && r->is_rough[at];
-            const swarf_sight *first = is_out    ? NULL
-                                       : is_fine ? detail->sight + (size_t)detail->slot[at] * (size_t)(n * n)
-                                                 : &c->middle[at];
+            const swarf_sight *first = is_out ? NULL : is_fine ? swarf_detail_of(c->detail, at) : &c->middle[at];
             const int32_t left = n * dx + 2 * reach, up = n * dy + 2 * reach, end = n + 4 * reach;
             for (int32_t j = up < 0 ? -up : 0; j < n && up + j < end; j++)
                 for (int32_t i = left < 0 ? -left : 0; i < n && left + i < end; i++)
@@ -181,7 +178,7 @@ static float line_at(const swarf_canvas *c, size_t at, const swarf_sight *const 
     for (int step = 0; step < (reach > 1 ? 8 : 4) && height < INFINITY; step++) {
         const int32_t di = reach * steps[step][0], dj = reach * steps[step][1];
         const swarf_sight *const other = window[j + dj][i + di];
-        if (!other || other == own) continue;
+        if (!other) continue;
         const float own_height = swarf_edge_height(footprint, own, other), crease = swarf_edge_crease(own, other);
         if (own_height > height) height = own_height;
         if (crease > edge)
@@ -196,7 +193,7 @@ static void resolve_square(const resolving *r, int32_t x, int32_t y)
     const swarf_canvas *c = r->canvas;
     const size_t at = swarf_canvas_at(c, x, y);
     const int32_t n = c->options->samples, reach = (n + 1) / 2; /* half a square, rounded up */
-    const swarf_sight *const sample = c->detail->sight + (size_t)c->detail->slot[at] * (size_t)(n * n);
+    const swarf_sight *const sample = swarf_detail_of(c->detail, at);
     const swarf_sight *window[WINDOW_MAX][WINDOW_MAX];
     swarf_spot spots[SWARF_PACKET] = {{.sky = 1}};
     float one[SWARF_PACKET][4], *const sum = c->colour[at];
@@ -247,13 +244,14 @@ static swarf_status sample(swarf_canvas *c, const uint8_t *is_rough, const swarf
         return sample_rows(&r, c->height, progress, from, to);
     }
     const double part = (to - from) / c->height;
-    for (; r.top < c->height; r.top += STRIP) {
+    swarf_status status = SWARF_OK;
+    for (; status == SWARF_OK && r.top < c->height; r.top += STRIP) {
         const int32_t end = r.top + STRIP < c->height ? r.top + STRIP : c->height;
         swarf_detail_forget(c->detail);
-        SWARF_TRY(sample_rows(&r, end, progress, from + part * r.top, from + part * end));
+        status = sample_rows(&r, end, progress, from + part * r.top, from + part * end);
     }
     swarf_detail_forget(c->detail);
-    return SWARF_OK;
+    return status;
 }
 
 swarf_status swarf_canvas_shade(swarf_canvas *c, const swarf_progress *progress, double from, double to)

@@ -6,6 +6,8 @@
  * rest is ordered by raw, so that a point stops looking as soon as nothing nearer can come; where raw is the least of a
  * few convex functions, their tangents in the middle tell of most traces that they are not the nearest.
  *
+ * Where traces leave the very same surface the first of the program has made it, whatever box was gathered.
+ *
  *   traces: of the box that was gathered; boxes within it that are narrowed from it look at the same ones
  *   seen: what a point goes through, a cache line and a half each */
 #include "surface/surface.h"
@@ -16,6 +18,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* What is nearer by less than this (mm) is as near: values and bounds are rounded. */
+static const double as_near = 1e-9;
 
 struct seen {
     double raw; /* from the middle of the box */
@@ -249,6 +254,7 @@ void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3
     swarf_surface_point found;
     first_shape(near, point, &found);
     double way[3], square = 0, least = INFINITY;
+    uint32_t maker = 0; /* trace that `least` is of, for which nothing may be as near that comes later */
     for (int k = 0; k < 3; k++) {
         way[k] = point[k] - near->middle[k];
         square += way[k] * way[k];
@@ -256,20 +262,26 @@ void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3
     const double away = sqrt(square), first = found.value;
     for (size_t i = 0; i < near->count; i++) {
         const struct seen *seen = &near->seen[i];
-        const double beaten = least < -first ? least : -first;
-        if (seen->raw - away > beaten) break;
-        if (is_beyond(seen, way, beaten)) continue;
+        const double beaten = least < -first ? least : -first, bound = beaten + as_near;
+        if (seen->raw - away > bound) break;
+        if (is_beyond(seen, way, bound)) continue;
         const swarf_trace *trace = &near->looked_at[seen->trace];
+        const int comes_first = seen->trace < maker;
+        const double most = comes_first ? fmin(bound, -first) : beaten;
         swarf_touch touch;
-        swarf_trace_look(trace, point, beaten, &touch);
-        if (touch.value >= beaten) continue;
-        least = touch.value;
+        swarf_trace_look(trace, point, most, &touch);
+        if (touch.value >= most) continue;
+        const int is_nearer = touch.value < least - as_near;
+        least = fmin(least, touch.value);
+        if (!is_nearer && !comes_first) continue;
+        maker = seen->trace;
         found = (swarf_surface_point){.value = -least,
                                       .normal = {-touch.gradient[0], -touch.gradient[1], -touch.gradient[2]},
                                       .t = touch.t,
                                       .move = trace->move,
                                       .piece = touch.piece};
     }
+    if (least < INFINITY) found.value = -least;
     *out = found;
 }
 

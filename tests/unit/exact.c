@@ -126,6 +126,66 @@ static void check_recall(swarf_stock *stock, swarf_scene *scene, swarf_surface *
     }
 }
 
+/** Passes on one level, each of which leaves the floor of others as it was: the first one there has made it, from
+ *  whatever box one looks. */
+static void check_ties(test_random *random)
+{
+    enum { PASSES = 7 };
+    const double start[3] = {-10, 5, 12};
+    swarf_cutter *cutter = NULL;
+    swarf_program *program = NULL;
+    swarf_surface *surface = NULL;
+    swarf_surface_near *near = NULL;
+    swarf_stock *stock = NULL;
+    swarf_stock_options options = swarf_stock_options_default();
+    const swarf_section section = {.tool = 4};
+    options.voxel_mm = voxel;
+    CHECK_OK(swarf_stock_create_box(&block, &options, &stock));
+    CHECK_OK(swarf_cutter_parse("flat:d=10,l=30", &cutter));
+    CHECK_OK(swarf_program_create(start, &program));
+    CHECK(swarf_program_add_operation(program, "floor") >= 0);
+    CHECK_OK(swarf_program_set_section(program, &section));
+    for (int i = 0; i < PASSES; i++) { /* pass i is move 2 i */
+        const double ends[2][3] = {{i & 1 ? -10 : 50, 5 + 3 * i, 12}, {i & 1 ? -10 : 50, 8 + 3 * i, 12}};
+        for (int end = 0; end < 2; end++) CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_FEED, ends[end], 100, 1));
+    }
+    const swarf_tool tool = {.number = 4, .cutter = cutter};
+    CHECK_OK(swarf_surface_create(stock, program, &tool, 1, NULL, &surface));
+    CHECK_OK(swarf_surface_near_create(surface, &near));
+    int decided = 0, wrong = 0;
+    for (int trial = 0; near && trial < 2000; trial++) {
+        const double p[3] = {test_random_in(random, 6, 34), test_random_in(random, 5, 23),
+                             12 + (trial & 1 ? test_random_in(random, -0.1, 0.1) : 0)};
+        int64_t first = -1;
+        int is_clear = 1;
+        for (int i = PASSES - 1; i >= 0; i--) {
+            const double off = fabs(p[1] - (5 + 3 * i));
+            if (off < 4.8) first = 2 * i;
+            is_clear &= off < 4.8 || off > 5.2;
+        }
+        if (!is_clear) continue;
+        decided++;
+        swarf_box box;
+        for (int k = 0; k < 3; k++) {
+            box.lo[k] = p[k] - test_random_in(random, 0, 3);
+            box.hi[k] = p[k] + test_random_in(random, 0, 3);
+        }
+        box.lo[2] -= 0.1; /* the floor is in it */
+        box.hi[2] += 0.1;
+        swarf_surface_point found;
+        if (!CHECK_OK(swarf_surface_gather(near, 2 * PASSES, &box))) break;
+        swarf_surface_evaluate(near, p, &found);
+        wrong += found.move != first;
+    }
+    CHECK(decided > 1000);
+    CHECK(wrong == 0);
+    swarf_surface_near_destroy(near);
+    swarf_surface_release(surface);
+    swarf_stock_destroy(stock);
+    swarf_program_release(program);
+    swarf_cutter_release(cutter);
+}
+
 int main(void)
 {
     test_random random = test_random_begin(53);
@@ -169,6 +229,7 @@ int main(void)
     CHECK(off <= seen / 1000);
     CHECK(turned == 0 && wrong == 0);
     if (scene) check_recall(stock, scene, surface);
+    check_ties(&random);
     swarf_surface_release(surface);
     swarf_scene_destroy(scene);
     swarf_stock_destroy(stock);

@@ -34,7 +34,7 @@ typedef struct swarf_check_options {
     size_t fixture_count;
     const swarf_solid *design; /**< NULL: not checked against */
     double design_mm;          /**< how deep flutes may go into the design */
-    double clearance_mm;       /**< between holder and stock; 0: not looked at */
+    double clearance_mm;       /**< between holder and stock, at most 1000; 0: not looked at */
     swarf_box travel;          /**< of the tool's tip; as it comes: without end */
     const int32_t *no_plunge;  /**< numbers of tools that cannot plunge */
     size_t no_plunge_count;

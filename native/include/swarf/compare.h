@@ -27,9 +27,9 @@ SWARF_API swarf_status swarf_compare_volume(swarf_stock *stock, const swarf_soli
 /** How the surface of a stock is to be held against a design. */
 typedef struct swarf_deviation_options {
     size_t size;
-    double excess_mm;      /**< material may stand out by this much; > 0 */
-    double gouge_mm;       /**< material may be missing by this much; > 0 */
-    double allowance_mm;   /**< material that is meant to be left on the design */
+    double excess_mm;      /**< material may stand out by this much; above 0, at most 1e6 */
+    double gouge_mm;       /**< material may be missing by this much; above 0, at most 1e6 */
+    double allowance_mm;   /**< material that is meant to be left on the design; -1e6 to 1e6 */
     swarf_box region;      /**< only in here; as it comes: everywhere */
     const uint8_t *ignore; /**< one for each triangle the design was given: 1 where it is not to be measured; or NULL */
     size_t ignore_count;
