@@ -245,23 +245,6 @@ static swarf_status refine(struct refining *work, size_t count, const swarf_prog
     return status;
 }
 
-swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, const double *points,
-                                  const double *directions, size_t count, double reach_mm,
-                                  const swarf_progress *progress, double *points_out, double *normals_out,
-                                  int64_t *moves_out)
-{
-    SWARF_REQUIRE(surface && (count == 0 || (points && directions && points_out)), "surface: NULL");
-    struct refining work = {.surface = surface,
-                            .moves = moves,
-                            .points = points,
-                            .directions = directions,
-                            .reach = reach_mm,
-                            .points_out = points_out,
-                            .normals_out = normals_out,
-                            .moves_out = moves_out};
-    return refine(&work, count, progress);
-}
-
 swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves, const double *points,
                                      const double *directions, size_t count, double reach_mm, double tolerance_mm,
                                      const swarf_progress *progress, double *points_out, double *normals_out,
@@ -278,6 +261,15 @@ swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves,
                             .normals_out = normals_out,
                             .moves_out = moves_out};
     return refine(&work, count, progress);
+}
+
+swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, const double *points,
+                                  const double *directions, size_t count, double reach_mm,
+                                  const swarf_progress *progress, double *points_out, double *normals_out,
+                                  int64_t *moves_out)
+{
+    return swarf_surface_refine_to(surface, moves, points, directions, count, reach_mm, 0, progress, points_out,
+                                   normals_out, moves_out);
 }
 
 swarf_status swarf_surface_find(const swarf_surface *surface, size_t moves, const double *points,
