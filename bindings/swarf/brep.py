@@ -7,7 +7,8 @@ edges in which they meet.
     mesh vertices where more chains end         corners
 
 The mesh tells only what is beside what; where corners and edges lie is solved on the shapes. Faces that go on smoothly
-into each other have no edge in the mesh: there the chain wanders by about a voxel, and their line of contact is solved."""
+into each other have no edge in the mesh: there the chain wanders by about a voxel, and their line of contact is
+solved."""
 from __future__ import annotations
 
 import math
@@ -18,8 +19,8 @@ from typing import Iterator, Optional, Sequence
 from ._native import Mesh, Surface
 from .progress import Report, check, share
 from .regions import NotAnalytic, Regions, find
-from .shapes import (CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet, on,
-                     tangency, unit)
+from .shapes import (CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet,
+                     on, tangency, unit)
 from .wording import Said
 
 __all__ = ["Brep", "Edge", "Face", "NotAnalytic", "make"]
@@ -217,8 +218,8 @@ class _Maker:
         return corners
 
     def settle_corners(self, corners: list[Vector]) -> None:
-        """Where three faces touch in a corner, their equations leave it open by the root of what numbers are exact to: it
-        goes to the end of the circle along which two of them touch."""
+        """Where three faces touch in a corner, their equations leave it open by the root of what numbers are exact to:
+        it goes to the end of the circle along which two of them touch."""
         for chain in self.chains:
             if not chain.touching or chain.closed or self.is_point(chain):
                 continue
@@ -231,8 +232,10 @@ class _Maker:
             if len(points) < 4 or _is_line(points, close) or _circle(*shapes, points, close):
                 continue
             circle = _circle(*shapes, points[1:-1], close)
-            for corner in ends if circle is not None else ():
-                centre, axis, radius = circle
+            if circle is None:
+                continue
+            centre, axis, radius = circle
+            for corner in ends:
                 out = add(corners[corner], centre, -1)
                 place = add(centre, unit(add(out, axis, -dot(out, axis))), radius)
                 beside = {region for other in self.chains for region in (other.left, other.right)
@@ -242,7 +245,8 @@ class _Maker:
                     corners[corner] = place
 
     def is_point(self, chain: _Chain) -> bool:
-        """Whether a chain has no length: where four faces meet in a point, the mesh has two corners beside each other."""
+        """Whether a chain has no length: where four faces meet in a point, the mesh has two corners beside each
+        other."""
         start, end = chain.vertices[0], chain.vertices[-1]
         return not chain.closed and self.corner_of[start] == self.corner_of[end] and all(
             distance(self.regions.vertices[vertex], self.regions.vertices[start]) < 4 * self.voxel
@@ -297,7 +301,8 @@ class _Maker:
             if distance(true, middle) < CURVE or length < 1e-3 * self.voxel:
                 k += 1
                 continue
-            if max(distance(points[k], true), distance(true, points[k + 1])) > HALF * length or len(points) >= MOST_POINTS:
+            longer = max(distance(points[k], true), distance(true, points[k + 1]))
+            if longer > HALF * length or len(points) >= MOST_POINTS:
                 raise self.fail("curve rough", x=true[0], y=true[1], z=true[2])
             directions.insert(k + 1, self.direction(chain, true, add(points[k + 1], points[k], -1)))
             points.insert(k + 1, true)
@@ -325,19 +330,20 @@ class _Maker:
             if not self.is_point(chain):
                 edge_of[number] = len(edges)
                 edges.append(self.edge(chain, corners))
-        faces, shells = [], {}
+        faces: list[Face] = []
+        shells: dict[int, list[int]] = {}
         for region, loops in enumerate(self.regions.loops()):
             if not loops:
                 raise self.fail("face without edge")
-            made = []
+            kept_loops = []
             for loop in loops:
                 steps = [self.chain_of[half] for half in loop]
                 kept = [(edge_of[chain], forwards) for k, (chain, forwards) in enumerate(steps)
                         if loop[k][0] in self.corner_of and chain in edge_of]
                 if not kept:
                     raise self.fail("face is point")
-                made.append(kept)
-            faces.append(Face(self.shape(region), self.regions.outwards[region], made))
+                kept_loops.append(kept)
+            faces.append(Face(self.shape(region), self.regions.outwards[region], kept_loops))
             shells.setdefault(self.regions.shell[region], []).append(region)
         made = Brep(corners, edges, faces, [shells[key] for key in sorted(shells)], self.left)
         self.check(made)
@@ -348,7 +354,8 @@ class _Maker:
         used: set[tuple[int, bool]] = set()
         for face in made.faces:
             for loop in face.loops:
-                ends = [(made.edges[edge].start, made.edges[edge].end)[::1 if forwards else -1] for edge, forwards in loop]
+                ends = [(made.edges[edge].start, made.edges[edge].end)[::1 if forwards else -1]
+                        for edge, forwards in loop]
                 if any(end != start for (_, end), (start, _) in zip(ends, ends[1:] + ends[:1])):
                     raise self.fail("loops open")
                 if used & set(loop):
@@ -376,8 +383,8 @@ def _is_line(points: list[Vector], close: float) -> bool:
 
 
 def _axes(a: Shape, b: Shape, place: Vector) -> Iterator[tuple[Vector, Vector]]:
-    """Points and directions of the lines about which a circle through a place may turn where it is on both shapes: their
-    axes, what two spheres or a sphere and a plane turn about, and across a torus' tube."""
+    """Points and directions of the lines about which a circle through a place may turn where it is on both shapes:
+    their axes, what two spheres or a sphere and a plane turn about, and across a torus' tube."""
     for shape, other in ((a, b), (b, a)):
         if shape.kind in (CYLINDER, CONE, TORUS):
             yield shape.point, shape.axis
@@ -405,8 +412,8 @@ def _circle(a: Shape, b: Shape, points: list[Vector], close: float) -> Optional[
 
 def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = None, progress: Report = None) -> Brep:
     """The solid of a closed mesh on a Surface, made of voxels this large (mm), with little left out of it
-    (Mesh.from_stock(error=voxel / 50)). NotAnalytic where it is not bounded by planes, cylinders, cones, spheres and tori
-    alone, or of too many faces; ValueError for a mesh that is empty or open."""
+    (Mesh.from_stock(error=voxel / 50)). NotAnalytic where it is not bounded by planes, cylinders, cones, spheres and
+    tori alone, or of too many faces; ValueError for a mesh that is empty or open."""
     if not mesh.triangle_count or not mesh.closed:
         raise ValueError(Said("no mesh"))
     if any(shell.volume_mm3 <= 0 for shell in mesh.shells()):

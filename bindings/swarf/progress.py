@@ -19,7 +19,10 @@ TURNS = 4096
 
 def share(progress: Report, begin: float, end: float) -> Report:
     """The progress of a part of the work, from begin to end of the whole."""
-    return None if progress is None else lambda fraction: progress(begin + (end - begin) * fraction)
+    if progress is None:
+        return None
+    whole = progress
+    return lambda fraction: whole(begin + (end - begin) * fraction)
 
 
 def check(progress: Report, fraction: float) -> None:

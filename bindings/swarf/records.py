@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The records in the buffers of a Program, for struct: what swarf_move, swarf_arc, swarf_section and swarf_axes hold."""
+"""What is in buffers: the records of a Program, for struct, as swarf_move, swarf_arc, swarf_section and swarf_axes hold
+them; rows of tables."""
 from __future__ import annotations
 
 import struct
+from typing import Any
 
 #: end x y z in mm, feed in mm/min (of a dwell: seconds), line, arc or -1, section * 8 + kind
 MOVE = struct.Struct("=dddfIiI")
@@ -17,3 +19,9 @@ AXES = struct.Struct("=Q6d")
 def section_and_kind(packed: int) -> tuple[int, int]:
     """The parts of a move's last number."""
     return packed >> 3, packed & 7
+
+
+def rows(table: memoryview) -> list[list[Any]]:
+    """The rows of a view of two dimensions."""
+    found: Any = table.tolist()  # which type checkers take to be of one dimension
+    return found

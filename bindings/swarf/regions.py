@@ -10,6 +10,7 @@ from typing import Optional
 
 from ._native import Mesh, Surface
 from .progress import TURNS, Report, check, share
+from .records import rows as rows_of
 from .shapes import Shape, Vector, add, cross, dot
 from .wording import Said
 
@@ -115,14 +116,14 @@ class _Parts:
 
     def __init__(self, mesh: Mesh, rows: list[list[float]], voxel: float, ticks: Ticks) -> None:
         self.voxel, self.ticks = voxel, ticks
-        self.vertices: list[Vector] = [(x, y, z) for x, y, z in mesh.vertices.tolist()]
-        self.triangles: list[list[int]] = mesh.triangles.tolist()
-        self.across = {}
+        self.vertices: list[Vector] = [(x, y, z) for x, y, z in rows_of(mesh.vertices)]
+        self.triangles: list[list[int]] = rows_of(mesh.triangles)
+        self.across: dict[tuple[int, int], int] = {}
         for number, (a, b, c) in enumerate(self.triangles):
             self.across[a, b] = self.across[b, c] = self.across[c, a] = number
             ticks.tick()
         self.area = [math.hypot(*_area(self.vertices, triangle)) / 2 for triangle in self.triangles]
-        lo, hi = mesh.bounding_box
+        lo, hi = mesh.bounding_box or ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         self.directions = SAME / max(math.dist(lo, hi), SAME)
         self.probe = add(lo, (0.37 * (hi[0] - lo[0]), 0.41 * (hi[1] - lo[1]), 0.43 * (hi[2] - lo[2])))
         self.by_distance: list[tuple[float, int]] = []  # of the probe from each shape; and the shape
@@ -145,7 +146,8 @@ class _Parts:
         begin = bisect.bisect_left(self.by_distance, (away - 8 * SAME, 0))
         end = bisect.bisect_left(self.by_distance, (away + 8 * SAME, 0))
         for number in sorted(number for _, number in self.by_distance[begin:end]):
-            if self.shapes[number].is_same(shape, SAME, self.directions):
+            known = self.shapes[number]
+            if known is not None and known.is_same(shape, SAME, self.directions):
                 return number
             self.ticks.tick()
         self.shapes.append(shape)
@@ -154,7 +156,8 @@ class _Parts:
 
     def components(self) -> tuple[list[int], list[list[int]]]:
         """Region of each triangle, triangles of each region."""
-        region_of, members = [-1] * len(self.triangles), []
+        region_of = [-1] * len(self.triangles)
+        members: list[list[int]] = []
         for first in range(len(self.triangles)):
             if region_of[first] >= 0:
                 continue
@@ -276,7 +279,7 @@ def _shells(region_of: list[int], across: dict[tuple[int, int], int], count: int
 
 def find(mesh: Mesh, surface: Surface, voxel: float, moves: Optional[int] = None, progress: Report = None) -> Regions:
     """The regions of a closed mesh on a Surface. NotAnalytic where they are of too many shapes."""
-    rows = mesh.faces(surface, moves=moves, progress=share(progress, 0, 0.5)).tolist()
+    rows = rows_of(mesh.faces(surface, moves=moves, progress=share(progress, 0, 0.5)))
     ticks = Ticks(progress)
     ticks.fraction = 0.5
     parts = _Parts(mesh, rows, voxel, ticks)

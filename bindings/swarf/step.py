@@ -55,7 +55,8 @@ def _poles(face: Face, edges: list[Edge], brep: Brep) -> Vector:
     middle = unit((sum(way[0] for way in ways), sum(way[1] for way in ways), sum(way[2] for way in ways)))
     across = cross(middle, (1.0, 0.0, 0.0) if abs(middle[0]) < 0.6 else (0.0, 1.0, 0.0))
     u, v = unit(across), cross(middle, unit(across))
-    turned = [add(add((0.0, 0.0, 0.0), u, math.cos(math.pi * k / 24)), v, math.sin(math.pi * k / 24)) for k in range(24)]
+    turned = [add(add((0.0, 0.0, 0.0), u, math.cos(math.pi * k / 24)), v, math.sin(math.pi * k / 24))
+              for k in range(24)]
     return min(turned, key=lambda axis: max(abs(dot(axis, way)) for way in ways))
 
 
@@ -86,8 +87,8 @@ class _Writer:
     def curve(self, edge: Edge, brep: Brep) -> str:
         start, end = brep.corners[edge.start], brep.corners[edge.end]
         if edge.axis is not None and edge.centre is not None:
-            towards = add(start, edge.centre, -1)
-            return self.put("CIRCLE('',%s,%s)" % (self.placement(edge.centre, edge.axis, towards), _number(edge.radius)))
+            placed = self.placement(edge.centre, edge.axis, add(start, edge.centre, -1))
+            return self.put("CIRCLE('',%s,%s)" % (placed, _number(edge.radius)))
         if not edge.points:
             vector = self.put("VECTOR('',%s,1.)" % self.direction(add(end, start, -1)))
             return self.put("LINE('',%s,%s)" % (self.point(start), vector))

@@ -58,7 +58,8 @@ def test_where_shapes_meet():
     place, left = shapes.meet([shapes.on(shape) for shape in (sphere, *planes)], (0.4, 0.6, 2.2))
     assert left < 1e-12 and place == pytest.approx((0.5, 0.5, math.sqrt(3.5)))
     wall = Shape(PLANE, (2, 0, 0), (1, 0, 0), 0, 0)  # touches the sphere in a point
-    place, left = shapes.meet([shapes.on(sphere), shapes.on(wall), shapes.tangency(sphere, wall, True)], (1.9, 0.3, -0.2))
+    touching = [shapes.on(sphere), shapes.on(wall), shapes.tangency(sphere, wall, True)]
+    place, left = shapes.meet(touching, (1.9, 0.3, -0.2))
     assert left < 1e-9 and place == pytest.approx((2, 0, 0), abs=1e-8)
 
 
@@ -70,12 +71,14 @@ def test_where_shapes_meet():
     ("ball:d=6,l=20", ((10, 20, 5), (10, 20, -5), (50, 20, -5)), {PLANE: 8, CYLINDER: 3, SPHERE: 2}, 26),
     # down a slope: four faces meet in one point at the ends
     ("ball:d=6,l=20", ((10, 20, 5), (10, 20, -4), (50, 25, -6)), {PLANE: 8, CYLINDER: 3, SPHERE: 2}, 26),
-    ("flat:d=6,l=20", ((10, 20, 5), (10, 20, -4), (20, 20, -4), ((20, 30, -4), (20, 25, -4))), {PLANE: 9, CYLINDER: 4}, 30),
+    ("flat:d=6,l=20", ((10, 20, 5), (10, 20, -4), (20, 20, -4), ((20, 30, -4), (20, 25, -4))),
+     {PLANE: 9, CYLINDER: 4}, 30),
     ("flat:d=6,l=20", ((-5, 20, 5), (-5, 20, -4), (65, 20, -4), (65, 20, 5), (30, -5, 5), (30, -5, -2), (30, 45, -2)),
      {PLANE: 18}, 48),  # two grooves that cross
     # quarters of circles between the tubes of a tool with rounded corners
     ("bull:d=6,r=1,l=20", ((10, 20, 5), (10, 20, -4), (40, 20, -4)), {PLANE: 9, CYLINDER: 4, TORUS: 2}, 32),
-    ("bull:d=6,r=1,l=20", ((10, 10, 5), (10, 10, -4), (40, 10, -4), (40, 30, -4)), {PLANE: 11, CYLINDER: 7, TORUS: 3}, 47),
+    ("bull:d=6,r=1,l=20", ((10, 10, 5), (10, 10, -4), (40, 10, -4), (40, 30, -4)),
+     {PLANE: 11, CYLINDER: 7, TORUS: 3}, 47),
 ])
 def test_solids(tool, moves, faces, edges, tmp_path):
     mesh, surface = cut(tool, *moves)
@@ -111,7 +114,8 @@ def test_what_crosses_along_curves():
     curves = [edge for edge in made.edges if edge.points]
     assert curves and all(len(edge.points) == len(edge.directions) > 1 for edge in curves)
     for edge in curves:
-        beside = [face.shape for face in made.faces if any(made.edges[n] is edge for loop in face.loops for n, _ in loop)]
+        beside = [face.shape for face in made.faces
+                  if any(made.edges[n] is edge for loop in face.loops for n, _ in loop)]
         assert len(beside) == 2
         assert all(abs(shape.see(point)[0]) < 1e-6 for shape in beside for point in edge.points)
     assert "B_SPLINE_CURVE_WITH_KNOTS" in step.text(made)
@@ -119,7 +123,8 @@ def test_what_crosses_along_curves():
 
 def test_step_files(tmp_path):
     """Ordinary files; names of any letters; tubes that cross their axis by the name that STEP has for them."""
-    assert step._string("it's 5 \\ Ä\n\U0001F600") == "it''s 5 \\\\ \\X2\\00C4\\X0\\\\X2\\000A\\X0\\\\X4\\0001F600\\X0\\"
+    written = "it''s 5 \\\\ \\X2\\00C4\\X0\\\\X2\\000A\\X0\\\\X4\\0001F600\\X0\\"
+    assert step._string("it's 5 \\ Ä\n\U0001F600") == written
     made = brep.make(*cut("bull:d=8,r=1,l=20", (30, 20, 5), (30, 20, -4)), VOXEL)
     step.write(made, tmp_path / "part.step", "Teil\nÄ")
     (tmp_path / "other").write_text("")
@@ -163,9 +168,16 @@ def test_what_is_hollow_has_no_share():
     assert told.value.share is None
 
 
+def test_an_empty_mesh_has_no_regions():
+    _, surface = cut("flat:d=6,l=20", (10, 20, 5), (10, 20, -4))
+    found = regions.find(swarf.Mesh([], []), surface, VOXEL)
+    assert (found.region_of, found.shape, found.unknown, found.known_share) == ([], [], [], 0)
+
+
 def test_edges_that_turn_back_end():
     """A ball that turns back into its own slot: a curve whose points once went to and fro for ever."""
-    mesh, surface = cut("ball:d=6,l=20", (23.5, 11, 5), (23.5, 11, -4), (23.5, 19.5, -4), ((28, 15, -4), (28, 19.5, -4)))
+    mesh, surface = cut("ball:d=6,l=20", (23.5, 11, 5), (23.5, 11, -4), (23.5, 19.5, -4),
+                        ((28, 15, -4), (28, 19.5, -4)))
     with pytest.raises(brep.NotAnalytic, match="an edge is no smooth curve"):
         brep.make(mesh, surface, VOXEL)
 
@@ -204,7 +216,8 @@ def test_too_many_shapes():
 
 
 def test_progress_is_told_all_along(monkeypatch):
-    """Searching for shapes, for regions, for corners and along edges: some thousand turns at most between two reports."""
+    """Searching for shapes, for regions, for corners and along edges: some thousand turns at most between two
+    reports."""
     mesh, surface = cut("bull:d=6,r=1,l=20", (10, 10, 5), (10, 10, -4), (40, 10, -4), (40, 30, -4))
     monkeypatch.setattr(regions, "TURNS", 16)
     told = []
