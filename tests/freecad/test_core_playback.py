@@ -315,6 +315,21 @@ def test_pick_of_a_picture_that_the_stock_is_past(swarf, session, table):
     assert session.pick(view, x, y, len(table)).point[2] == pytest.approx(-2, abs=1e-3)
 
 
+def test_pick_knows_the_move_that_is_being_cut(swarf, session, table):
+    from swarf_cam import session as sessions
+
+    place = next(i for i in range(len(table)) if session.listing.text(session.listing.line_of(i)) == "G1 X45") + 0.5
+    camera = swarf.Camera.view("top", session.box, 4 / 3)
+    view = sessions.View(camera, 400, 300)
+    go(session, place)  # the tool stands at x 32.5
+    for point, expected in (((30, 10, -2), "G1 X45"), ((34.5, 10, -2), "G1 X45"), ((15, 15, -2), "G2 X20 Y10 I5 J0"),
+                            ((18.9, 10, -2), "G2 X20 Y10 I5 J0"), ((38, 10, 0), None)):
+        x, y, _ = camera.project(point, 4 / 3)
+        found = session.pick(view, x, y, place)
+        assert session.at == place and found.point == pytest.approx(point, abs=0.05)
+        assert (session.listing.text(found.line) if found.move >= 0 else None) == expected
+
+
 def test_a_pick_can_be_broken_off(swarf, session, table):
     from swarf_cam import session as sessions
 
