@@ -106,7 +106,7 @@ static PyObject *scene_set_surface(PyObject *self, PyObject *args, PyObject *key
     if (!failed) {
         swarf_status status = swarf_surface_create(((stock_object *)first)->handle, held->handle, tools, tool_count,
                                                    &call.progress, &surface);
-        if (!status) status = swarf_scene_set_surface(scene->handle, surface, moves);
+        if (!status) status = swarf_scene_set_surface(scene->handle, surface, moves, 0);
         failed = call_end(&call, state, status);
     }
     tools_free(tools, tool_count);
@@ -136,7 +136,7 @@ static PyObject *scene_show_surface(PyObject *self, PyObject *args, PyObject *ke
     if (program_range(surface->program, 0, moves_object, &from, &moves)) return NULL;
     native_call call;
     call_begin(&call, NULL);
-    const swarf_status status = swarf_scene_set_surface(scene->handle, surface->handle, moves);
+    const swarf_status status = swarf_scene_set_surface(scene->handle, surface->handle, moves, 0);
     if (call_end(&call, state, status)) return NULL;
     Py_INCREF(object);
     drop_surface(scene);
@@ -147,16 +147,19 @@ static PyObject *scene_show_surface(PyObject *self, PyObject *args, PyObject *ke
     Py_RETURN_NONE;
 }
 
-static PyObject *scene_set_moves(PyObject *self, PyObject *count)
+static PyObject *scene_set_moves(PyObject *self, PyObject *args)
 {
     scene_object *scene = (scene_object *)self;
+    PyObject *count;
+    double fraction = 0;
     size_t from, moves;
+    if (!PyArg_ParseTuple(args, "O|d:set_moves", &count, &fraction)) return NULL;
     if (!scene->surface) {
         PyErr_SetString(PyExc_ValueError, "set_moves: the scene has no surface; call set_surface() first");
         return NULL;
     }
     if (program_range(scene->program, 0, count, &from, &moves)) return NULL;
-    const swarf_status status = swarf_scene_set_surface(scene->handle, scene->surface, moves);
+    const swarf_status status = swarf_scene_set_surface(scene->handle, scene->surface, moves, fraction);
     if (status) return error_raise(state_of(self), status);
     Py_RETURN_NONE;
 }
@@ -398,8 +401,9 @@ static PyMethodDef scene_methods[] = {
     {"show_surface", WITH_KEYWORDS(scene_show_surface), METH_VARARGS | METH_KEYWORDS,
      "show_surface($self, surface, moves=None)\n--\n\n"
      "Show a Surface after the first moves (None: all) of its program, as set_surface() does."},
-    {"set_moves", scene_set_moves, METH_O,
-     "set_moves($self, count, /)\n--\n\nHow many moves of the surface stand now; None: all."},
+    {"set_moves", scene_set_moves, METH_VARARGS,
+     "set_moves($self, count, fraction=0.0, /)\n--\n\n"
+     "How many moves of the surface stand now, and what part, 0 .. 1, of the next one's path; None: all."},
     {"set_fixtures", scene_set_fixtures, METH_O,
      "set_fixtures($self, meshes, /)\n--\n\nShow these Mesh objects beside the stock, in place of those before."},
     {"render", WITH_KEYWORDS(scene_render), METH_VARARGS | METH_KEYWORDS,

@@ -476,8 +476,8 @@ class Scene:
         scene's stock must have seen: sharp edges, true normals, and the moves that made them."""
     def show_surface(self, surface: Surface, moves: Optional[int] = None) -> None:
         """Show a Surface after the first moves (None: all) of its program, as set_surface() does."""
-    def set_moves(self, count: Optional[int], /) -> None:
-        """How many moves of the surface stand now; None: all."""
+    def set_moves(self, count: Optional[int], fraction: float = 0.0, /) -> None:
+        """How many moves of the surface stand now, and what part, 0 .. 1, of the next one's path; None: all."""
     def set_fixtures(self, meshes: Sequence[Mesh], /) -> None:
         """Show these Mesh objects beside the stock, in place of those before."""
     def render(

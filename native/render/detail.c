@@ -88,8 +88,7 @@ static swarf_status look(adding *a, const swarf_progress *progress, double from,
 {
     const swarf_canvas *c = a->canvas;
     const size_t each = (size_t)a->side * (size_t)a->side;
-    size_t moves;
-    const int is_exact = c->options->exact && swarf_scene_surface(c->look.scene, &moves);
+    const int is_exact = c->options->exact && swarf_scene_surface(c->look.scene);
     const double middle = is_exact ? from + traced * (to - from) : to;
     SWARF_TRY(swarf_parallel_for((a->count + PIECE - 1) / PIECE, sample_some, a, progress, from, middle));
     if (!is_exact) return SWARF_OK;

@@ -333,10 +333,9 @@ static int32_t choose_coarse(const swarf_scene *scene, const swarf_picture_optio
 /** Whether a picture is nothing but the colours of one ray each. */
 static int is_plain(const swarf_scene *scene, const swarf_shading *shading, const swarf_picture_buffers *out)
 {
-    size_t moves;
     const swarf_picture_options *o = shading->options;
     const int passes = o->samples > 1 || o->edges || o->occlusion || o->shadow || o->path || o->outline ||
-                       o->axes_mm > 0 || (o->exact && swarf_scene_surface(scene, &moves));
+                       o->axes_mm > 0 || (o->exact && swarf_scene_surface(scene));
     return !passes && swarf_shade_is_uniform(shading) && !out->depth && !out->normal && !out->position && !out->move &&
            !out->seen;
 }

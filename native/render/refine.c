@@ -74,12 +74,13 @@ static swarf_status give_some(void *context, size_t piece)
 
 static swarf_status find(batch *b, int moved, const swarf_progress *progress)
 {
-    size_t moves;
-    const swarf_surface *surface = swarf_scene_surface(b->look->scene, &moves);
+    double part;
+    const size_t moves = swarf_scene_moves(b->look->scene, &part);
+    const swarf_surface *surface = swarf_scene_surface(b->look->scene);
     const double reach = reach_voxels * swarf_scene_voxel(b->look->scene);
     b->moved = moved;
-    SWARF_TRY(swarf_surface_refine_to(surface, moves, b->point, b->direction, b->count, reach, b->tolerance, progress,
-                                      b->found, b->normal, b->move));
+    SWARF_TRY(swarf_surface_refine_to(surface, moves, part, b->point, b->direction, b->count, reach, b->tolerance,
+                                      progress, b->found, b->normal, b->move));
     return swarf_parallel_for((b->count + PIECE - 1) / PIECE, give_some, b, NULL, 0, 1);
 }
 
@@ -114,8 +115,7 @@ swarf_status swarf_look_refine(const swarf_look *look, swarf_sight *sights, size
                                swarf_place_fn place, const void *context, const swarf_progress *progress, double from,
                                double to)
 {
-    size_t moves;
-    if (!swarf_scene_surface(look->scene, &moves) || count == 0) return SWARF_OK;
+    if (!swarf_scene_surface(look->scene) || count == 0) return SWARF_OK;
     const size_t room = count < BATCH ? count : BATCH;
     double *const numbers = malloc(room * 12 * sizeof *numbers);
     batch b = {.look = look,

@@ -30,6 +30,7 @@ struct swarf_scene {
     swarf_fixtures *fixtures; /* NULL: none */
     swarf_surface *surface;   /* NULL: none */
     size_t surface_moves;
+    double surface_part; /* of the next move */
     swarf_ray_space space;
     void *scratch;
     size_t scratch_size;
@@ -261,23 +262,31 @@ swarf_status swarf_scene_set_fixtures(swarf_scene *scene, const swarf_triangles 
     return SWARF_OK;
 }
 
-swarf_status swarf_scene_set_surface(swarf_scene *scene, swarf_surface *surface, size_t moves)
+swarf_status swarf_scene_set_surface(swarf_scene *scene, swarf_surface *surface, size_t moves, double part)
 {
     SWARF_REQUIRE(scene, "scene: missing");
+    SWARF_REQUIRE(part >= 0 && part <= 1, "scene: part %g of a move; 0 to 1 are possible", part);
     SWARF_TRY(swarf_stock_enter_write(scene->stock));
-    if (surface != scene->surface || moves != scene->surface_moves) swarf_recall_forget(&scene->recall);
+    if (surface != scene->surface || moves != scene->surface_moves || part != scene->surface_part)
+        swarf_recall_forget(&scene->recall);
     if (surface) (void)swarf_surface_retain(surface);
     swarf_surface_release(scene->surface);
     scene->surface = surface;
     scene->surface_moves = moves;
+    scene->surface_part = part;
     swarf_stock_leave(scene->stock);
     return SWARF_OK;
 }
 
-const swarf_surface *swarf_scene_surface(const swarf_scene *scene, size_t *moves)
+const swarf_surface *swarf_scene_surface(const swarf_scene *scene)
 {
-    *moves = scene->surface_moves;
     return scene->surface;
+}
+
+size_t swarf_scene_moves(const swarf_scene *scene, double *part)
+{
+    *part = scene->surface_part;
+    return scene->surface_moves;
 }
 
 const swarf_fixtures *swarf_scene_fixtures(const swarf_scene *scene)

@@ -29,8 +29,10 @@ void swarf_scene_box(const swarf_scene *scene, swarf_box *out);
 /** NULL: none. */
 const struct swarf_fixtures *swarf_scene_fixtures(const swarf_scene *scene);
 
-/** The exact surface and how many moves of it stand; NULL: none. */
-const struct swarf_surface *swarf_scene_surface(const swarf_scene *scene, size_t *moves);
+/** The exact surface; NULL: none. */
+const struct swarf_surface *swarf_scene_surface(const swarf_scene *scene);
+/** Its moves, and the part of the next one, that stand. */
+size_t swarf_scene_moves(const swarf_scene *scene, double *part);
 
 /** Edge of a voxel, mm. */
 double swarf_scene_voxel(const swarf_scene *scene);

@@ -85,7 +85,7 @@ static int overlaps(const swarf_surface_box *box, const swarf_box *where)
     return 1;
 }
 
-/* Add a trace to what is seen unless it cannot matter. */
+/* Let what is seen have a trace unless it cannot matter. */
 static swarf_status look_at(struct gathering *g, uint32_t trace)
 {
     swarf_surface_near *near = g->near;
@@ -97,6 +97,22 @@ static swarf_status look_at(struct gathering *g, uint32_t trace)
     struct seen *seen = &near->seen[near->count++];
     *seen = (struct seen){.raw = touch.raw, .bounds = touch.bounds, .trace = trace};
     memcpy(seen->bound, touch.bound, sizeof seen->bound);
+    return SWARF_OK;
+}
+
+static swarf_status make_room(swarf_surface_near *near)
+{
+    return swarf_array_reserve((void **)&near->traces, &near->trace_room, near->trace_count + 1, sizeof *near->traces);
+}
+
+/* The trace behind the last one is kept when it is seen. */
+static swarf_status keep_trace(struct gathering *g)
+{
+    swarf_surface_near *near = g->near;
+    near->looked_at = near->traces;
+    const size_t before = near->count;
+    SWARF_TRY(look_at(g, (uint32_t)near->trace_count));
+    near->trace_count += near->count - before;
     return SWARF_OK;
 }
 
@@ -112,14 +128,26 @@ static swarf_status gather_level(struct gathering *g, int level, size_t first, s
             SWARF_TRY(gather_level(g, level - 1, i * SURFACE_FAN, (i + 1) * SURFACE_FAN));
             continue;
         }
-        swarf_surface_near *near = g->near;
-        SWARF_TRY(swarf_array_reserve((void **)&near->traces, &near->trace_room, near->trace_count + 1,
-                                      sizeof *near->traces));
-        SWARF_TRY(swarf_surface_trace(surface, i, &near->traces[near->trace_count]));
-        near->looked_at = near->traces;
-        const size_t before = near->count;
-        SWARF_TRY(look_at(g, (uint32_t)near->trace_count));
-        near->trace_count += near->count - before;
+        SWARF_TRY(make_room(g->near));
+        SWARF_TRY(swarf_surface_trace(surface, i, &g->near->traces[g->near->trace_count]));
+        SWARF_TRY(keep_trace(g));
+    }
+    return SWARF_OK;
+}
+
+/* The same for a part of a move. */
+static swarf_status gather_part(struct gathering *g, size_t move, double part)
+{
+    swarf_surface_near *near = g->near;
+    swarf_path path;
+    SWARF_TRY(swarf_program_path(near->surface->program, move, &path));
+    swarf_path_part(&path, part, &path);
+    const uint32_t parts = swarf_trace_parts(&path);
+    for (uint32_t i = 0; i < parts; i++) {
+        SWARF_TRY(make_room(near));
+        swarf_trace_make(swarf_surface_body(near->surface, move), &path, (int64_t)move, i, parts,
+                         &near->traces[near->trace_count]);
+        SWARF_TRY(keep_trace(g));
     }
     return SWARF_OK;
 }
@@ -192,6 +220,11 @@ static void first_shape(const swarf_surface_near *near, const double point[3], s
 
 swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const swarf_box *where)
 {
+    return swarf_surface_gather_part(near, moves, 0, where);
+}
+
+swarf_status swarf_surface_gather_part(swarf_surface_near *near, size_t moves, double part, const swarf_box *where)
+{
     SWARF_REQUIRE(near && where, "surface: NULL");
     near->count = near->trace_count = 0;
     const swarf_surface *surface = near->surface;
@@ -213,6 +246,8 @@ swarf_status swarf_surface_gather(swarf_surface_near *near, size_t moves, const 
         status = swarf_surface_gather(near->before, surface->before_moves, &back);
     }
     if (status == SWARF_OK) status = gather_level(&g, top, 0, surface->level_count[top]);
+    if (status == SWARF_OK && part > 0 && g.limit < surface->part_count && surface->parts[g.limit].move == moves)
+        status = gather_part(&g, moves, part);
     if (status == SWARF_OK)
         sort_seen(&g);
     else

@@ -27,6 +27,7 @@ enum { PIECE = 1 << 12 };
 struct refining {
     const swarf_surface *surface;
     size_t moves;
+    double part; /* of the next move */
     const double *points, *directions;
     double reach, tolerance, *points_out, *normals_out;
     int64_t *moves_out;
@@ -113,7 +114,7 @@ static swarf_status refine_cell_with(const struct refining *work, swarf_surface_
             box.hi[k] = fmax(box.hi[k], at + work->reach);
         }
     }
-    SWARF_TRY(swarf_surface_gather(near, work->moves, &box));
+    SWARF_TRY(swarf_surface_gather_part(near, work->moves, work->part, &box));
     for (size_t i = 0; i < work->runs[run + 1] - work->runs[run]; i++) refine_point(work, near, first[i].point);
     return SWARF_OK;
 }
@@ -245,7 +246,7 @@ static swarf_status refine(struct refining *work, size_t count, const swarf_prog
     return status;
 }
 
-swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves, const double *points,
+swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves, double part, const double *points,
                                      const double *directions, size_t count, double reach_mm, double tolerance_mm,
                                      const swarf_progress *progress, double *points_out, double *normals_out,
                                      int64_t *moves_out)
@@ -253,6 +254,7 @@ swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves,
     SWARF_REQUIRE(surface && (count == 0 || (points && directions && points_out)), "surface: NULL");
     struct refining work = {.surface = surface,
                             .moves = moves,
+                            .part = part,
                             .points = points,
                             .directions = directions,
                             .reach = reach_mm,
@@ -268,7 +270,7 @@ swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, co
                                   const swarf_progress *progress, double *points_out, double *normals_out,
                                   int64_t *moves_out)
 {
-    return swarf_surface_refine_to(surface, moves, points, directions, count, reach_mm, 0, progress, points_out,
+    return swarf_surface_refine_to(surface, moves, 0, points, directions, count, reach_mm, 0, progress, points_out,
                                    normals_out, moves_out);
 }
 

@@ -71,7 +71,7 @@ void swarf_surface_first(const swarf_surface *surface, const double point[3], sw
     for (int k = 0; k < 3; k++) n[k] = length > 0 ? n[k] / length : k == 2;
 }
 
-static const swarf_body *body_of(const swarf_surface *surface, size_t move)
+const swarf_body *swarf_surface_body(const swarf_surface *surface, size_t move)
 {
     const uint32_t section = swarf_move_get_section(&swarf_program_moves(surface->program)[move]);
     const int32_t body = surface->section_body[section];
@@ -83,7 +83,8 @@ swarf_status swarf_surface_trace(const swarf_surface *surface, size_t part, swar
     const swarf_surface_part *own = &surface->parts[part];
     swarf_path path;
     SWARF_TRY(swarf_program_path(surface->program, own->move, &path));
-    swarf_trace_make(body_of(surface, own->move), &path, own->move, own->part, swarf_trace_parts(&path), out);
+    swarf_trace_make(swarf_surface_body(surface, own->move), &path, own->move, own->part, swarf_trace_parts(&path),
+                     out);
     return SWARF_OK;
 }
 
@@ -134,7 +135,8 @@ static swarf_status take_parts(swarf_surface *surface)
         swarf_path path;
         double from[6], to[6]; /* turned axes cut nothing, here as in a simulation */
         SWARF_TRY(swarf_program_path(surface->program, i, &path));
-        if (!path.has_motion || !body_of(surface, i) || swarf_program_move_axes(surface->program, i, from, to))
+        if (!path.has_motion || !swarf_surface_body(surface, i) ||
+            swarf_program_move_axes(surface->program, i, from, to))
             continue;
         const uint32_t parts = swarf_trace_parts(&path);
         SWARF_TRY(

@@ -209,7 +209,7 @@ int main(int count, char **argument)
         time_pictures(scene, job, resolution, 1280);
         time_pictures(scene, job, resolution, 1920);
     }
-    bench_must(swarf_scene_set_surface(scene, surface, moves));
+    bench_must(swarf_scene_set_surface(scene, surface, moves, 0));
     time_viewer(scene, job, resolution);
     swarf_surface_release(surface);
     swarf_scene_destroy(scene);

@@ -173,6 +173,8 @@ def test_the_exact_surface_knows_its_moves():
         program.add_line((0, 0, 0))
     with pytest.raises(ValueError):
         scene.set_moves(3)
+    with pytest.raises(ValueError, match="part 1.5"):
+        scene.set_moves(1, 1.5)
 
 
 def test_what_is_shown_stays_while_a_picture_is_made():

@@ -8,8 +8,9 @@
 static const double voxel = 0.5;
 static const swarf_box block = {{0, 0, 0}, {40, 30, 20}};
 
-/** Signed distances at a point to the seven pieces: the box's faces and, above floor and within the wall, the slot. */
-static double value_at(const double p[3], double normal[3], int *cut)
+/** Signed distances at a point to the seven pieces: the box's faces and, above floor and within the wall, the slot,
+ *  which is cut from x 10 as far as `end`. */
+static double value_at(const double p[3], double end, double normal[3], int *cut)
 {
     double value = -INFINITY;
     memset(normal, 0, 3 * sizeof *normal);
@@ -22,7 +23,7 @@ static double value_at(const double p[3], double normal[3], int *cut)
             memset(normal, 0, 3 * sizeof *normal);
             normal[axis] = side ? 1 : -1;
         }
-    const double near = fmin(fmax(p[0], 10), 30), dx = p[0] - near, dy = p[1] - 15, rho = hypot(dx, dy);
+    const double near = fmin(fmax(p[0], 10), end), dx = p[0] - near, dy = p[1] - 15, rho = hypot(dx, dy);
     const double wall = 5 - rho, floor = p[2] - 12, slot = fmin(wall, floor);
     if (slot <= value) return value;
     *cut = 1;
@@ -35,7 +36,8 @@ static double value_at(const double p[3], double normal[3], int *cut)
     return slot;
 }
 
-static swarf_scene *make_scene(swarf_stock **stock, swarf_surface **out)
+/** The slot is cut by this part of its one move. */
+static swarf_scene *make_scene(double part, swarf_stock **stock, swarf_surface **out)
 {
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = voxel;
@@ -55,9 +57,10 @@ static swarf_scene *make_scene(swarf_stock **stock, swarf_surface **out)
     const swarf_tool tool = {.number = 4, .cutter = cutter};
     CHECK_OK(swarf_stock_create_box(&block, &options, stock));
     CHECK_OK(swarf_surface_create(*stock, program, &tool, 1, NULL, &surface));
+    swarf_path_part(&path, part, &path);
     CHECK_OK(swarf_stock_cut(*stock, cutter, &path, 1, NULL));
     CHECK_OK(swarf_scene_create(*stock, &scene));
-    CHECK_OK(swarf_scene_set_surface(scene, surface, 1));
+    CHECK_OK(swarf_scene_set_surface(scene, surface, part == 1, part < 1 ? part : 0));
     *out = surface;
     swarf_program_release(program);
     swarf_cutter_release(cutter);
@@ -65,13 +68,13 @@ static swarf_scene *make_scene(swarf_stock **stock, swarf_surface **out)
 }
 
 /** A point within a voxel of an edge that can be seen from above: the block's or the slot's. */
-static void aim_at_edge(test_random *random, double out[3])
+static void aim_at_edge(test_random *random, double slot_end, double out[3])
 {
-    const double angle = test_random_in(random, 0, 2 * 3.14159265358979), end = cos(angle) > 0 ? 30 : 10;
+    const double angle = test_random_in(random, 0, 2 * 3.14159265358979), end = cos(angle) > 0 ? slot_end : 10;
     for (int axis = 0; axis < 3; axis++) out[axis] = test_random_in(random, block.lo[axis], block.hi[axis]);
     switch (test_random_below(random, 4)) {
     case 0: /* straight, at the top or the floor */
-        out[0] = test_random_in(random, 10, 30);
+        out[0] = test_random_in(random, 10, slot_end);
         out[1] = test_random_below(random, 2) ? 10 : 20;
         out[2] = test_random_below(random, 2) ? 12 : 20;
         break;
@@ -100,8 +103,10 @@ static void check_recall(swarf_stock *stock, swarf_scene *scene, swarf_surface *
     static int32_t move[PIXELS], fresh_move[PIXELS];
     const swarf_picture_buffers out = {.size = sizeof out, .rgba = rgba, .move = move};
     const swarf_picture_buffers fresh_out = {.size = sizeof out, .rgba = fresh, .move = fresh_move};
-    swarf_surface *const surfaces[] = {surface, surface, NULL, surface, surface, surface, surface};
-    const size_t moves[] = {1, 0, 0, 1, 1, 1, 1};
+    enum { STEPS = 9, LAST_CHANGE = 5 };
+    swarf_surface *const surfaces[STEPS] = {surface, surface, surface, surface, NULL, surface};
+    const size_t moves[STEPS] = {1, 0, 0, 0, 0, 1};
+    const double part[STEPS] = {0, 0, 0.5, 0.25, 0, 0};
     swarf_picture_options options = swarf_picture_options_default();
     swarf_camera camera;
     options.width = WIDTH;
@@ -109,15 +114,16 @@ static void check_recall(swarf_stock *stock, swarf_scene *scene, swarf_surface *
     options.samples = 2;
     options.occlusion = 0;
     CHECK_OK(swarf_camera_fit(SWARF_VIEW_ISOMETRIC, 1, &block, (double)WIDTH / HEIGHT, &camera));
-    for (int step = 0; step < 7; step++) {
+    for (int step = 0; step < STEPS; step++) {
+        const int now = step < LAST_CHANGE ? step : LAST_CHANGE;
         swarf_scene *once = NULL;
-        if (step == 4) options.samples = 3;
-        if (step == 5) options.occlusion = 1; /* other colours: some squares more are sampled, some are not */
-        if (step == 6) options.colour[2] = 0.1f;
-        if (step < 4) CHECK_OK(swarf_scene_set_surface(scene, surfaces[step], moves[step]));
+        if (step == 6) options.samples = 3;
+        if (step == 7) options.occlusion = 1; /* other colours: some squares more are sampled, some are not */
+        if (step == 8) options.colour[2] = 0.1f;
+        if (step == now) CHECK_OK(swarf_scene_set_surface(scene, surfaces[now], moves[now], part[now]));
         CHECK_OK(swarf_scene_render(scene, &camera, &options, NULL, &out));
         CHECK_OK(swarf_scene_create(stock, &once));
-        CHECK_OK(swarf_scene_set_surface(once, surfaces[step], moves[step]));
+        CHECK_OK(swarf_scene_set_surface(once, surfaces[now], moves[now], part[now]));
         CHECK_OK(swarf_scene_render(once, &camera, &options, NULL, &fresh_out));
         swarf_scene_destroy(once);
         CHECK(memcmp(rgba, fresh, sizeof rgba) == 0 && memcmp(move, fresh_move, sizeof move) == 0);
@@ -186,28 +192,25 @@ static void check_ties(test_random *random)
     swarf_cutter_release(cutter);
 }
 
-int main(void)
+/** What is seen at random places of a scene, against the formula. */
+static void check_picks(test_random *random, swarf_scene *scene, double end, int trials)
 {
-    test_random random = test_random_begin(53);
-    swarf_stock *stock = NULL;
-    swarf_surface *surface = NULL;
-    swarf_scene *scene = make_scene(&stock, &surface);
-    swarf_picture_options options = swarf_picture_options_default();
-    int seen = 0, off = 0, turned = 0, wrong = 0;
-    for (int trial = 0; scene && trial < 20000; trial++) {
+    const swarf_picture_options options = swarf_picture_options_default();
+    int seen = 0, off = 0, turned = 0, wrong = 0, of_slot = 0;
+    for (int trial = 0; trial < trials; trial++) {
         swarf_camera camera = {.perspective = trial & 1, .fov_deg = 30, .height_mm = 60, .up = {0.1, 0.3, 1}};
         for (int i = 0; i < 3; i++) {
-            camera.target[i] = test_random_in(&random, block.lo[i], block.hi[i]);
+            camera.target[i] = test_random_in(random, block.lo[i], block.hi[i]);
             camera.eye[i] =
-                camera.target[i] + (i < 2 ? test_random_in(&random, -60, 60) : test_random_in(&random, 30, 90));
+                camera.target[i] + (i < 2 ? test_random_in(random, -60, 60) : test_random_in(random, 30, 90));
         }
-        if (trial & 2) aim_at_edge(&random, camera.target);
+        if (trial & 2) aim_at_edge(random, end, camera.target);
         swarf_pick pick;
         if (!CHECK_OK(swarf_scene_pick(scene, &camera, &options, 0, 0, &pick))) break;
         if (pick.seen != SWARF_SEEN_STOCK) continue;
         double normal[3], cosine = 0, slope = 0, length = 0;
         int cut;
-        const double value = value_at(pick.point, normal, &cut);
+        const double value = value_at(pick.point, end, normal, &cut);
         seen++;
         if (fabs(value) > 1e-3 * voxel) {
             /* The field rounds an edge off by a third of a voxel. Along a ray that grazes a face beside one, the face
@@ -224,14 +227,29 @@ int main(void)
         for (int i = 0; i < 3; i++) cosine += normal[i] * pick.normal[i];
         turned += !(cosine > cos(0.1 * 3.14159265358979 / 180));
         wrong += pick.move != (cut ? 0 : -1);
+        of_slot += cut;
     }
-    CHECK(seen > 15000);
+    CHECK(seen > trials * 3 / 4 && of_slot > seen / 20);
     CHECK(off <= seen / 1000);
     CHECK(turned == 0 && wrong == 0);
-    if (scene) check_recall(stock, scene, surface);
+}
+
+int main(void)
+{
+    test_random random = test_random_begin(53);
+    const double parts[] = {1, 0.5, 0.05};
+    for (int i = 0; i < 3; i++) {
+        swarf_stock *stock = NULL;
+        swarf_surface *surface = NULL;
+        swarf_scene *scene = make_scene(parts[i], &stock, &surface);
+        if (scene) check_picks(&random, scene, 10 + 20 * parts[i], i ? 5000 : 20000);
+        if (scene && i == 0) check_recall(stock, scene, surface);
+        CHECK(swarf_scene_set_surface(scene, surface, 0, -0.1) == SWARF_ERROR_ARGUMENT);
+        CHECK(swarf_scene_set_surface(scene, surface, 0, NAN) == SWARF_ERROR_ARGUMENT);
+        swarf_surface_release(surface);
+        swarf_scene_destroy(scene);
+        swarf_stock_destroy(stock);
+    }
     check_ties(&random);
-    swarf_surface_release(surface);
-    swarf_scene_destroy(scene);
-    swarf_stock_destroy(stock);
     return test_end();
 }

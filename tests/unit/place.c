@@ -299,7 +299,7 @@ static void check_pick(swarf_stock *turned, swarf_surface *surface, const swarf_
     swarf_camera camera;
     swarf_pick pick = {0};
     CHECK_OK(swarf_scene_create(turned, &scene));
-    CHECK_OK(swarf_scene_set_surface(scene, surface, SIZE_MAX));
+    CHECK_OK(swarf_scene_set_surface(scene, surface, SIZE_MAX, 0));
     CHECK_OK(swarf_camera_fit(SWARF_VIEW_BOTTOM, 0, &around, 1, &camera));
     CHECK_OK(swarf_scene_pick(scene, &camera, &options, 0, 0, &pick));
     CHECK(pick.seen == SWARF_SEEN_STOCK && pick.move == -1);

@@ -32,9 +32,6 @@ COARSE_MAX = 4
 # alone, and where it is exact and names its move but for what was never cut; its voxels, as a part of that.
 PROBE_REACH, PROBE_REACH_EXACT, PROBE_VOXEL = 0.35, 0.05, 0.3
 
-# A point of the surface that lay deeper than this in the material, in voxels, before a move was cut by it.
-BEING_CUT = 0.25
-
 # Stock in the colours of its deviation: as light as the colours of the legend want it, linear.
 TINTED_MATERIAL = (0.8, 0.8, 0.8)
 
@@ -179,7 +176,7 @@ class Session:
 
     def _current_scene(self):
         if self._exact:
-            self._scene.set_moves(self._playback.moves)
+            self._scene.set_moves(self._playback.moves, self._playback.fraction)
         return self._scene
 
     def _look(self, view, place):
@@ -290,10 +287,7 @@ class Session:
                                            sections=dict(view.look).get("sections") or None)
         if found is None or found.seen != "stock":
             return None
-        if self._is_being_cut(found.point, place, progress):
-            move = int(place)
-        else:
-            move = found.move if found.move >= 0 else self._maker(found.point, int(place), progress)
+        move = found.move if found.move >= 0 else self._maker(found.point, int(place), progress)
         result = Picked(found.point, found.normal, depth_below_top=self.box[1][2] - found.point[2],
                         slope_deg=math.degrees(math.acos(min(max(found.normal[2], -1.0), 1.0))))
         design = self._solid(progress)
@@ -309,16 +303,6 @@ class Session:
         """Stand at a place."""
         while self._playback.at != place:
             self.step(place, 0.1, progress)
-
-    def _is_being_cut(self, point, place, progress):
-        """Whether a point of the surface at a place was in material before the move that is partly done there: what has
-        the whole moves alone, the scene and _maker(), knows none of its faces. Stays at the place."""
-        if place == int(place):
-            return False
-        self._go(int(place), progress)
-        depth = -self._stock.sample([point])[0]
-        self._go(place, progress)
-        return depth > BEING_CUT * self.voxel_mm
 
     def _maker(self, point, place, progress):
         """The last of the moves before a place that takes something from a tiny block about a point of the surface:

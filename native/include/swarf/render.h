@@ -72,9 +72,10 @@ SWARF_API swarf_status swarf_scene_create(swarf_stock *stock, swarf_scene **out)
 SWARF_API void swarf_scene_destroy(swarf_scene *scene);
 SWARF_API swarf_status swarf_scene_update(swarf_scene *scene);
 
-/** Show the stock as the exact surface (kept) that stands after its first `moves` moves, which must be those that the
- *  stock has seen: pictures then have sharp edges and true normals, and know their moves. NULL: the field alone. */
-SWARF_API swarf_status swarf_scene_set_surface(swarf_scene *scene, swarf_surface *surface, size_t moves);
+/** Show the stock as the exact surface (kept) that stands after its first `moves` moves and a part, 0 .. 1, of the next
+ *  one's path, which must be those that the stock has seen: pictures then have sharp edges and true normals, and know
+ *  their moves. NULL: the field alone. SWARF_ERROR_ARGUMENT: no such part. */
+SWARF_API swarf_status swarf_scene_set_surface(swarf_scene *scene, swarf_surface *surface, size_t moves, double part);
 
 /** Show these bodies beside the stock, in place of those before; count 0: none. The triangles are copied.
  *  SWARF_ERROR_ARGUMENT for a vertex number out of range or a coordinate that is not finite. */

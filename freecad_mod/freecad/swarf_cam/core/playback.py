@@ -21,6 +21,11 @@ class Playback:
         return self._history.move
 
     @property
+    def fraction(self):
+        """The part of the next one that is."""
+        return self._history.fraction
+
+    @property
     def at(self):
         """Where it stands."""
         return self._history.move + self._history.fraction
