@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Milling simulation: the face of libswarf. Lengths in mm. Import the package swarf instead."""
-import os
-from typing import Any, Callable, Iterable, Literal, Mapping, NamedTuple, Optional, Sequence, Union, final
+from __future__ import annotations
 
-from typing_extensions import Buffer
+from typing import Any, Final, Iterable, Literal, Mapping, Optional, Protocol, Sequence, Union, final
 
-#: Called with the fraction done, a few dozen times a second; a true answer cancels (Cancelled), an exception cancels
-#: and comes out unchanged. Signals such as Ctrl-C cancel too.
-Progress = Optional[Callable[[float], Any]]
-Path = Union[str, bytes, os.PathLike[str], os.PathLike[bytes]]
-Point = Sequence[float]
+from _typeshed import ReadableBuffer, structseq
+
+from .aliases import Box, Buffers, Colouring, Dialect, PartKind, Path, Point, Progress, Severity, View
+
+class _Array(Protocol):
+    """Arrays of NumPy: buffers, which type checkers know from Python 3.12 on."""
+
+    @property
+    def __array_interface__(self) -> Any: ...
+
+_Buffer = Union[ReadableBuffer, _Array]
 #: A table of n rows: a buffer of two dimensions (any number format in native byte order, strided or not), or rows.
-Table = Union[Buffer, Sequence[Sequence[float]]]
-PartKind = Literal["flutes", "shank", "holder"]
-View = Literal["isometric", "top", "bottom", "front", "rear", "left", "right"]
-Box = tuple[tuple[float, float, float], tuple[float, float, float]]
-Colouring = Literal["material", "operation", "tool", "age", "feed", "deviation"]
-Buffers = Literal["rgba", "depth", "normal", "position", "move", "seen"]
+_Table = Union[_Buffer, Sequence[Sequence[float]]]
 
 class Error(Exception):
     """Something libswarf could not do; base of its own exceptions."""
@@ -56,7 +56,7 @@ class Cutter:
 
     def __new__(cls, text: str) -> Cutter: ...
     @classmethod
-    def from_parts(cls, parts: Iterable[tuple[PartKind, Table]], /) -> Cutter:
+    def from_parts(cls, parts: Iterable[tuple[PartKind, _Table]], /) -> Cutter:
         """A cutter from (kind, nodes) pairs: nodes an (n, 3) table of r, z (mm) and bulge (tan of a quarter of the
         arc's angle to the next node, 0 for a line), from the axis at the lowest height up and back to the axis.
         ValueError, or GeometryError for an impossible meridian."""
@@ -85,7 +85,7 @@ class Program:
         path: Path,
         *,
         start: Optional[Point] = None,
-        dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
+        dialect: Dialect = "linuxcnc",
         tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
         diameters: Optional[Mapping[int, float]] = None,
         parameters: Optional[Path] = None,
@@ -108,7 +108,7 @@ class Program:
         *,
         name: str = "text",
         start: Optional[Point] = None,
-        dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
+        dialect: Dialect = "linuxcnc",
         tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
         diameters: Optional[Mapping[int, float]] = None,
         parameters: Optional[Path] = None,
@@ -125,7 +125,7 @@ class Program:
         path: Path,
         *,
         start: Optional[Point] = None,
-        dialect: Literal["linuxcnc", "grbl", "mach3", "fanuc"] = "linuxcnc",
+        dialect: Dialect = "linuxcnc",
         tools: Union[None, Path, Iterable[tuple[int, float, float]]] = None,
         diameters: Optional[Mapping[int, float]] = None,
         parameters: Optional[Path] = None,
@@ -244,13 +244,13 @@ class Stock:
     def estimate(cls, lo: Point, hi: Point, voxel: float) -> int:
         """Bytes that a stock filling this box may need while it is cut."""
     def lumps(
-        self, points: Table = (), *, progress: Progress = None
+        self, points: _Table = (), *, progress: Progress = None
     ) -> tuple[tuple[Lump, ...], tuple[Optional[int], ...]]:
         """What hangs together, by voxels with a common face: Lumps, the largest first, and for each of an (n, 3) table
         of points the place of the lump that holds it, None in the air."""
     def placed(
         self,
-        placement: Table,
+        placement: _Table,
         *,
         voxel: Optional[float] = None,
         surface: Optional[Surface] = None,
@@ -277,7 +277,7 @@ class Stock:
         """64-bit hash of the content, the same whatever the threads or kernels."""
     def size(self, /) -> tuple[int, int]:
         """(leaves of 8x8x8 voxels, bytes held)."""
-    def sample(self, points: Table, /) -> memoryview:
+    def sample(self, points: _Table, /) -> memoryview:
         """Signed distance (mm, negative inside, trilinear) at an (n, 3) table of points: read-only float32 view.
         Beyond the narrow band +-3 voxels."""
     def cut(
@@ -338,14 +338,14 @@ class Stock:
         width: int = 1024,
         height: int = 768,
         *,
-        view: Literal["isometric", "top", "bottom", "front", "rear", "left", "right"] = "isometric",
+        view: View = "isometric",
         samples: int = 3,
         perspective: bool = False,
         progress: Progress = None,
     ) -> Optional[bytes]:
         """A shaded picture, samples x samples rays per pixel at edges. With a path it is written as PNG and None is
         returned; else RGBA bytes, 4 x width x height, rows from the top."""
-    def cast(self, origins: Table, directions: Table) -> tuple[memoryview, memoryview]:
+    def cast(self, origins: _Table, directions: _Table) -> tuple[memoryview, memoryview]:
         """First hits of rays, (n, 3) tables in mm -> (distances: float64 view, in lengths of the direction, inf for
         none; normals: (n, 3) float32 view)."""
 
@@ -385,7 +385,9 @@ class Camera:
     def zoom(self, factor: float, toward: Optional[Point] = None) -> None:
         """Show things ``factor`` times as large; the point ``toward`` (the target) stays at its place in the
         picture."""
-    def ray(self, x: float, y: float, aspect: float = 1.0) -> Box:
+    def ray(
+        self, x: float, y: float, aspect: float = 1.0
+    ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """(origin, unit direction) of the ray through a place of the picture."""
     def project(self, point: Point, aspect: float = 1.0) -> tuple[float, float, float]:
         """(x, y, depth in mm) at which a point appears; x and y are NaN for what is behind a perspective eye."""
@@ -447,14 +449,27 @@ class Picture:
         """(height, width) uint8 view: what is seen, 0 nothing, 1 stock, 2 section, 3 flutes, 4 shank, 5 holder,
         6 fixture."""
 
-class Pick(NamedTuple):
+@final
+class Pick(
+    structseq[Any],
+    tuple[
+        Literal["stock", "section", "flutes", "shank", "holder", "fixture"], tuple[float, float, float],
+        tuple[float, float, float], int, float
+    ],
+):
     """What is seen at a place of a picture."""
 
-    seen: Literal["stock", "section", "flutes", "shank", "holder", "fixture"]
-    point: tuple[float, float, float]
-    normal: tuple[float, float, float]
-    move: int
-    depth: float
+    __match_args__: Final = ("seen", "point", "normal", "move", "depth")
+    @property
+    def seen(self) -> Literal["stock", "section", "flutes", "shank", "holder", "fixture"]: ...
+    @property
+    def point(self) -> tuple[float, float, float]: ...
+    @property
+    def normal(self) -> tuple[float, float, float]: ...
+    @property
+    def move(self) -> int: ...
+    @property
+    def depth(self) -> float: ...
 
 @final
 class Scene:
@@ -498,7 +513,7 @@ class Scene:
         background: Optional[Sequence[float]] = None,
         background_top: Optional[Sequence[float]] = None,
         colouring: Colouring = "material",
-        values: Optional[Buffer] = None,
+        values: Optional[_Buffer] = None,
         value_range: float = 0.1,
         sections: Optional[Sequence[tuple[Point, Point]]] = None,
         cutter: Optional[tuple[Cutter, Point]] = None,
@@ -531,16 +546,27 @@ class Scene:
     ) -> Optional[Pick]:
         """The Pick at a place of the picture (x to the right and y upwards, -1 .. 1), or None where nothing is."""
 
-class Held(NamedTuple):
+@final
+class Held(structseq[Any], tuple[int, int, int, int, int, int, int]):
     """What a History holds, in bytes."""
 
-    bytes: int
-    first_bytes: int
-    record_bytes: int
-    keyframe_bytes: int
-    record_count: int
-    keyframe_count: int
-    oldest: int
+    __match_args__: Final = (
+        "bytes", "first_bytes", "record_bytes", "keyframe_bytes", "record_count", "keyframe_count", "oldest"
+    )
+    @property
+    def bytes(self) -> int: ...
+    @property
+    def first_bytes(self) -> int: ...
+    @property
+    def record_bytes(self) -> int: ...
+    @property
+    def keyframe_bytes(self) -> int: ...
+    @property
+    def record_count(self) -> int: ...
+    @property
+    def keyframe_count(self) -> int: ...
+    @property
+    def oldest(self) -> int: ...
 
 @final
 class History:
@@ -570,18 +596,34 @@ class History:
     def fraction(self) -> float:
         """Part of the next move that is done, 0 .. 1."""
 
-class Finding(NamedTuple):
+@final
+class Finding(
+    structseq[Any],
+    tuple[
+        Severity, int, int, int, int, str, Literal["no tool", "unknown tool", "no flutes", "axis", "idle"], str, float
+    ],
+):
     """Something the simulation noticed."""
 
-    severity: Literal["note", "warning", "error"]
-    operation: int
-    move: int
-    line: int
-    tool: int
-    text: str
-    kind: Literal["no tool", "unknown tool", "no flutes", "axis", "idle"]
-    axis: str
-    value: float
+    __match_args__: Final = ("severity", "operation", "move", "line", "tool", "text", "kind", "axis", "value")
+    @property
+    def severity(self) -> Severity: ...
+    @property
+    def operation(self) -> int: ...
+    @property
+    def move(self) -> int: ...
+    @property
+    def line(self) -> int: ...
+    @property
+    def tool(self) -> int: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def kind(self) -> Literal["no tool", "unknown tool", "no flutes", "axis", "idle"]: ...
+    @property
+    def axis(self) -> str: ...
+    @property
+    def value(self) -> float: ...
 
 @final
 class Simulation:
@@ -605,16 +647,16 @@ class Simulation:
 
 @final
 class Surface:
-    """The surface that a program makes of the stock ``first`` (as it is now, not kept), exactly: the first shape and the
-    sweeps of the cutters in ``tools``. The program can no longer be added to while the surface lives. Immutable, any
-    thread."""
+    """The surface that a program makes of the stock ``first`` (as it is now, not kept), exactly: the first shape and
+    the sweeps of the cutters in ``tools``. The program can no longer be added to while the surface lives. Immutable,
+    any thread."""
 
     def __new__(
         cls, first: Stock, program: Program, tools: dict[int, Cutter], *, progress: Progress = None
     ) -> Surface: ...
     def next(
         self,
-        placement: Table,
+        placement: _Table,
         program: Program,
         tools: dict[int, Cutter],
         *,
@@ -629,7 +671,7 @@ class Mesh:
     """Triangles: vertices an (n, 3) table in mm, triangles an (m, 3) table of vertex numbers, counter-clockwise seen
     from outside. Immutable, any thread. ValueError for numbers out of range."""
 
-    def __new__(cls, vertices: Table, triangles: Table) -> Mesh: ...
+    def __new__(cls, vertices: _Table, triangles: _Table) -> Mesh: ...
     @classmethod
     def read(cls, path: Path) -> Mesh:
         """Mesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."""
@@ -664,7 +706,7 @@ class Mesh:
         """The mesh of from_stock() straight to a binary .stl file; its Contour. One that would not fit into
         ``memory_limit`` (bytes; 0: 80 % of what is free now) is made and written band by band along x, with small
         triangles along the planes between them; a pipe gets the whole one however much memory that takes."""
-    def write(self, path: Path, *, colors: Optional[Table] = None, progress: Progress = None) -> None:
+    def write(self, path: Path, *, colors: Optional[_Table] = None, progress: Progress = None) -> None:
         """Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure
         loses nothing. ``colors`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."""
     def measure(self) -> Shell:
@@ -677,10 +719,10 @@ class Mesh:
         """The closed mesh cut by the plane through ``point``: (what lies against ``normal``, what lies along it), two
         closed Meshes with caps, empty where there is nothing. GeometryError: the mesh is open."""
     def thickness(self, *, progress: Progress = None) -> memoryview:
-        """Thickness of the wall behind each triangle, mm: a read-only float32 view, the least of four rays straight into
-        the material, from the triangle's middle and near its corners, to a face within 60 degrees of opposite; inf where
-        there is none."""
-    def placed(self, placement: Table, /) -> Mesh:
+        """Thickness of the wall behind each triangle, mm: a read-only float32 view, the least of four rays straight
+        into the material, from the triangle's middle and near its corners, to a face within 60 degrees of opposite; inf
+        where there is none."""
+    def placed(self, placement: _Table, /) -> Mesh:
         """The mesh turned and moved, as a new Mesh: ``placement`` is three rows of rotation and shift (mm)."""
     def origins(
         self, surface: Surface, *, moves: Optional[int] = None, reach: float = 0.0, progress: Progress = None
@@ -692,10 +734,11 @@ class Mesh:
     def faces(
         self, surface: Surface, *, moves: Optional[int] = None, reach: float = 0.0, progress: Progress = None
     ) -> memoryview:
-        """The endless face that each triangle is on: a read-only (m, 9) float64 view of kind (as in origins()), point (x,
-        y, z), axis (unit), radius, and second number. Plane: a point, the normal out of the material; cylinder: axis and
-        radius; cone: apex, axis, second = tangent of the angle between axis and face; sphere: centre, radius; torus:
-        centre, axis, radius to the middle of the tube, second = radius of the tube. Looked for as origins() does."""
+        """The endless face that each triangle is on: a read-only (m, 9) float64 view of kind (as in origins()), point
+        (x, y, z), axis (unit), radius, and second number. Plane: a point, the normal out of the material; cylinder:
+        axis and radius; cone: apex, axis, second = tangent of the angle between axis and face; sphere: centre, radius;
+        torus: centre, axis, radius to the middle of the tube, second = radius of the tube. Looked for as origins()
+        does."""
     def section(self, point: Point, normal: Point) -> tuple[tuple[tuple[float, float, float], ...], ...]:
         """Where the plane through ``point`` cuts the mesh: a tuple of polylines, each a tuple of (x, y, z) in mm,
         material on the left seen against ``normal``. In a closed mesh each goes on from its last point to its
@@ -740,52 +783,111 @@ class Mesh:
     def degenerate(self) -> int:
         """Triangles with a repeated vertex."""
 
-class Shell(NamedTuple):
+@final
+class Shell(
+    structseq[Any],
+    tuple[
+        int, int, int, int, int, int, float, float, tuple[float, float, float],
+        tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]],
+        tuple[float, float, float],
+        tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]],
+        Optional[tuple[tuple[float, float, float], tuple[float, float, float]]]
+    ],
+):
     """A piece of surface that hangs together by its edges, measured."""
 
-    triangles: int
-    vertices: int
-    edges: int
-    open_edges: int
-    euler: int
-    genus: int
-    volume_mm3: float
-    area_mm2: float
-    centre: tuple[float, float, float]
-    inertia: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
-    moments: tuple[float, float, float]
-    axes: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
-    bounding_box: Optional[tuple[tuple[float, float, float], tuple[float, float, float]]]
+    __match_args__: Final = (
+        "triangles", "vertices", "edges", "open_edges", "euler", "genus", "volume_mm3", "area_mm2", "centre",
+        "inertia", "moments", "axes", "bounding_box"
+    )
+    @property
+    def triangles(self) -> int: ...
+    @property
+    def vertices(self) -> int: ...
+    @property
+    def edges(self) -> int: ...
+    @property
+    def open_edges(self) -> int: ...
+    @property
+    def euler(self) -> int: ...
+    @property
+    def genus(self) -> int: ...
+    @property
+    def volume_mm3(self) -> float: ...
+    @property
+    def area_mm2(self) -> float: ...
+    @property
+    def centre(self) -> tuple[float, float, float]: ...
+    @property
+    def inertia(self) -> tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]: ...
+    @property
+    def moments(self) -> tuple[float, float, float]: ...
+    @property
+    def axes(self) -> tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]: ...
+    @property
+    def bounding_box(self) -> Optional[tuple[tuple[float, float, float], tuple[float, float, float]]]: ...
 
-class Lump(NamedTuple):
+@final
+class Lump(
+    structseq[Any],
+    tuple[
+        int, float, tuple[float, float, float], tuple[tuple[float, float, float], tuple[float, float, float]]
+    ],
+):
     """Material of a stock that hangs together."""
 
-    voxels: int
-    volume_mm3: float
-    inside: tuple[float, float, float]
-    bounding_box: tuple[tuple[float, float, float], tuple[float, float, float]]
+    __match_args__: Final = ("voxels", "volume_mm3", "inside", "bounding_box")
+    @property
+    def voxels(self) -> int: ...
+    @property
+    def volume_mm3(self) -> float: ...
+    @property
+    def inside(self) -> tuple[float, float, float]: ...
+    @property
+    def bounding_box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]: ...
 
-class Contour(NamedTuple):
+@final
+class Contour(structseq[Any], tuple[int, int, int, int, int, int, int, float, bool, float]):
     """What Mesh.from_stock() or Mesh.stream() came to."""
 
-    full_triangles: int
-    triangles: int
-    sharp_vertices: int
-    exact_vertices: int
-    parted_cells: int
-    intersections_found: int
-    intersections_left: int
-    error_mm: float
-    budget_met: bool
-    unseen_mm3: float
+    __match_args__: Final = (
+        "full_triangles", "triangles", "sharp_vertices", "exact_vertices", "parted_cells",
+        "intersections_found", "intersections_left", "error_mm", "budget_met", "unseen_mm3"
+    )
+    @property
+    def full_triangles(self) -> int: ...
+    @property
+    def triangles(self) -> int: ...
+    @property
+    def sharp_vertices(self) -> int: ...
+    @property
+    def exact_vertices(self) -> int: ...
+    @property
+    def parted_cells(self) -> int: ...
+    @property
+    def intersections_found(self) -> int: ...
+    @property
+    def intersections_left(self) -> int: ...
+    @property
+    def error_mm(self) -> float: ...
+    @property
+    def budget_met(self) -> bool: ...
+    @property
+    def unseen_mm3(self) -> float: ...
 
-class Comparison(NamedTuple):
+@final
+class Comparison(structseq[Any], tuple[float, float, float, float]):
     """Stock and design by volume, mm3."""
 
-    design_mm3: float
-    stock_mm3: float
-    excess_mm3: float
-    gouge_mm3: float
+    __match_args__: Final = ("design_mm3", "stock_mm3", "excess_mm3", "gouge_mm3")
+    @property
+    def design_mm3(self) -> float: ...
+    @property
+    def stock_mm3(self) -> float: ...
+    @property
+    def excess_mm3(self) -> float: ...
+    @property
+    def gouge_mm3(self) -> float: ...
 
 def compare_volume(stock: Stock, design: Mesh, *, progress: Progress = None) -> Comparison:
     """Compare a stock with a closed design Mesh by volume, on the stock's own voxels. The stock is unchanged.
@@ -797,7 +899,7 @@ class Solid:
     it is open, inside out or encloses nothing. Immutable, any thread."""
 
     def __new__(cls, mesh: Mesh, *, progress: Progress = None) -> Solid: ...
-    def distance(self, points: Table, /) -> memoryview:
+    def distance(self, points: _Table, /) -> memoryview:
         """Signed distances (mm, negative inside, exact) of an (n, 3) table of points: read-only float64 view."""
     @property
     def volume(self) -> float:
@@ -842,35 +944,75 @@ class Check:
         feed or speed not known), the greatest of the move; "climb" 1: climb milling, -1: conventional; "at" 0 .. 1
         along the move, where the angle is greatest."""
 
-class CheckFinding(NamedTuple):
+@final
+class CheckFinding(
+    structseq[Any],
+    tuple[
+        Severity, str, PartKind, int, int, int, int, float, tuple[float, float, float], tuple[float, float, float],
+        float, str
+    ],
+):
     """Something that Stock.check() found."""
 
-    severity: Literal["note", "warning", "error"]
-    kind: str
-    part: PartKind
-    operation: int
-    move: int
-    line: int
-    tool: int
-    t: float
-    tip: tuple[float, float, float]
-    point: tuple[float, float, float]
-    depth: float
-    text: str
+    __match_args__: Final = (
+        "severity", "kind", "part", "operation", "move", "line", "tool", "t", "tip", "point", "depth", "text"
+    )
+    @property
+    def severity(self) -> Severity: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def part(self) -> PartKind: ...
+    @property
+    def operation(self) -> int: ...
+    @property
+    def move(self) -> int: ...
+    @property
+    def line(self) -> int: ...
+    @property
+    def tool(self) -> int: ...
+    @property
+    def t(self) -> float: ...
+    @property
+    def tip(self) -> tuple[float, float, float]: ...
+    @property
+    def point(self) -> tuple[float, float, float]: ...
+    @property
+    def depth(self) -> float: ...
+    @property
+    def text(self) -> str: ...
 
-class Cluster(NamedTuple):
+@final
+class Cluster(
+    structseq[Any],
+    tuple[
+        Literal["excess", "gouge", "not reached"], float, bool, tuple[float, float, float], float, float,
+        tuple[tuple[float, float, float], tuple[float, float, float]], int, tuple[int, ...], float
+    ],
+):
     """Neighbouring places where the deviation is beyond tolerance."""
 
-    kind: Literal["excess", "gouge", "not reached"]
-    value: float
-    at_least: bool
-    place: tuple[float, float, float]
-    area: float
-    volume: float
-    box: tuple[tuple[float, float, float], tuple[float, float, float]]
-    triangle: int
-    moves: tuple[int, ...]
-    away: float
+    __match_args__: Final = ("kind", "value", "at_least", "place", "area", "volume", "box", "triangle", "moves", "away")
+    @property
+    def kind(self) -> Literal["excess", "gouge", "not reached"]: ...
+    @property
+    def value(self) -> float: ...
+    @property
+    def at_least(self) -> bool: ...
+    @property
+    def place(self) -> tuple[float, float, float]: ...
+    @property
+    def area(self) -> float: ...
+    @property
+    def volume(self) -> float: ...
+    @property
+    def box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]: ...
+    @property
+    def triangle(self) -> int: ...
+    @property
+    def moves(self) -> tuple[int, ...]: ...
+    @property
+    def away(self) -> float: ...
 
 @final
 class Deviation:
@@ -883,13 +1025,13 @@ class Deviation:
         gouge: float = 0.05,
         allowance: float = 0.0,
         region: Optional[Box] = None,
-        ignore: Optional[Buffer] = None,
+        ignore: Optional[_Buffer] = None,
         program: Optional[Program] = None,
         tools: Optional[dict[int, Cutter]] = None,
         progress: Progress = None,
     ) -> Deviation:
-        """The same measurement judged by other options, see measure_deviation(), without measuring again: fast -> Deviation.
-        Stock and design may be gone; `first` stays what it was."""
+        """The same measurement judged by other options, see measure_deviation(), without measuring again: fast ->
+        Deviation. Stock and design may be gone; `first` stays what it was."""
     def histogram(self, lo: float, hi: float, bins: int = 64) -> tuple[float, ...]:
         """mm2 of the surface in equal steps of the deviation from lo to hi; what is beyond counts in the outer ones."""
     @property
@@ -949,7 +1091,7 @@ def measure_deviation(
     gouge: float = 0.05,
     allowance: float = 0.0,
     region: Optional[Box] = None,
-    ignore: Optional[Buffer] = None,
+    ignore: Optional[_Buffer] = None,
     first: Optional[Stock] = None,
     program: Optional[Program] = None,
     tools: Optional[dict[int, Cutter]] = None,
@@ -961,16 +1103,19 @@ def measure_deviation(
     ``tools`` tell the moves behind each cluster. The stocks are unchanged."""
 
 def compare_place(stock: Stock, design: Solid) -> tuple[str, float, float, str]:
-    """What makes it doubtful that a design belongs to a stock -> (kind, value, factor, text): "" when all looks well, "unit"
-    (value times as large, units that are factor apart), "empty", "beside", "out" (by value mm)."""
+    """What makes it doubtful that a design belongs to a stock -> (kind, value, factor, text): "" when all looks well,
+    "unit" (value times as large, units that are factor apart), "empty", "beside", "out" (by value mm)."""
 
-def compare_overlap(stock: Stock, solid: Solid, *, progress: Progress = None) -> tuple[float, tuple[float, float, float]]:
-    """How deep (mm, 0.0: not at all) a Solid, a fixture, reaches into a stock, and where. No more than six voxels are told;
-    less than 0.35 of one, as beside edges, is none."""
+def compare_overlap(
+    stock: Stock, solid: Solid, *, progress: Progress = None
+) -> tuple[float, tuple[float, float, float]]:
+    """How deep (mm, 0.0: not at all) a Solid, a fixture, reaches into a stock, and where. No more than six voxels are
+    told; less than 0.35 of one, as beside edges, is none."""
 
 def picture_colour(number: int) -> tuple[float, float, float]:
-    """Linear RGB, 0 .. 1, of an operation (by its index) or a tool (by its number) in pictures that are coloured by them."""
+    """Linear RGB, 0 .. 1, of an operation (by its index) or a tool (by its number) in pictures that are coloured by
+    them."""
 
-def deviation_colours(values: Table, rgba: Buffer, tolerance: float) -> bytes:
+def deviation_colours(values: _Table, rgba: _Buffer, tolerance: float) -> bytes:
     """Tint shaded pixels (RGBA bytes) by their deviations, an (n, 1) table of mm: green within the tolerance, by yellow
     to red where material is left, by cyan to blue where it is missing."""

@@ -7,12 +7,12 @@ An acceptance names a reason and at least one thing by which it knows its findin
      {"reason": "scallops are sanded", "kind": "excess", "place": [10.5, 3, -2], "within": 5, "most": 0.2}]
 
 kind: as in the report; operation, line, text (a part of it); place in mm, where the finding lies no farther than
-``within`` (default 1 mm); most: only while what was measured (mm of a deviation, depth of a contact, value of a load) is
-no greater than this. Where it is only known to be at least so much, "most" accepts nothing.
+``within`` (default 1 mm); most: only while what was measured (mm of a deviation, depth of a contact, value of a load)
+is no greater than this. Where it is only known to be at least so much, "most" accepts nothing.
 
 What a deviation measures depends on how it was looked at: with ``allowance`` (mm) only deviations over this very
-allowance are known, with ``tolerance`` (mm) only those beyond this tolerance or a coarser one: a tighter one is asked of
-the part anew, and brings places along that nobody has looked at.
+allowance are known, with ``tolerance`` (mm) only those beyond this tolerance or a coarser one: a tighter one is asked
+of the part anew, and brings places along that nobody has looked at.
 """
 from __future__ import annotations
 
@@ -86,7 +86,8 @@ def make(entry: Any, where: str) -> Acceptance:
         raise ValueError(f"{where}: tolerance: a number above 0 is wanted")
     if "allowance" in entry and not _number(entry["allowance"]):
         raise ValueError(f"{where}: allowance: a number is wanted")
-    return Acceptance(**{**entry, "place": None if place is None else tuple(place)})
+    words: dict[str, Any] = {**entry, "place": None if place is None else tuple(place)}
+    return Acceptance(**words)
 
 
 def read(path: str) -> list[Acceptance]:

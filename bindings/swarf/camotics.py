@@ -30,7 +30,7 @@ def _nodes(shape: str, r: float, length: float, snub: float) -> list[tuple[float
 
 
 def _number(table: dict[str, Any], key: str, scale: float) -> float:
-    value = table.get(key)
+    value: Any = table.get(key)
     if type(value) not in (int, float) or not (math.isfinite(value) and value > 0):
         raise ValueError(f"{key}: {value!r} is no positive length")
     return float(value) * scale

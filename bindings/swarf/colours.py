@@ -9,7 +9,7 @@ from typing import Any, Optional, Sequence
 from ._native import Mesh, Solid, Surface, deviation_colours
 from .job import Job
 from .progress import Report, share, told
-from .records import MOVE, SECTION, section_and_kind
+from .records import MOVE, SECTION, rows, section_and_kind
 
 KINDS = ("operation", "deviation", "thickness")
 
@@ -41,7 +41,7 @@ def _edges(triangle: Sequence[int]) -> list[tuple[int, int]]:
 def _fill(mesh: Mesh, colours: list[Optional[RGB]], otherwise: RGB, progress: Report) -> list[RGB]:
     """Triangles without a colour (slivers, whose normals may be any) take that of a neighbour, as far as it reaches."""
     unknown = [index for index, colour in enumerate(colours) if colour is None]
-    triangles = mesh.triangles.tolist() if unknown else []
+    triangles = rows(mesh.triangles) if unknown else []
     beside: dict[tuple[int, int], list[int]] = {edge: [] for index in unknown for edge in _edges(triangles[index])}
     for index, triangle in told(enumerate(triangles), len(triangles), progress):
         for edge in _edges(triangle):
@@ -68,7 +68,7 @@ def by_operation(mesh: Mesh, surface: Surface, job: Job, moves: Optional[int] = 
     """A colour for each operation of the job, one for all earlier set-ups, one for what no move made. Cancelled."""
     records, sections = job.program.moves, job.program.sections
     colours: list[Optional[RGB]] = []
-    origins = mesh.origins(surface, moves=moves, progress=share(progress, 0, 0.5)).tolist()
+    origins = rows(mesh.origins(surface, moves=moves, progress=share(progress, 0, 0.5)))
     for set_up, move, *_ in told(origins, len(origins), share(progress, 0.5, 0.75)):
         if move == -2:
             colours.append(None)
@@ -87,7 +87,7 @@ def by_deviation(mesh: Mesh, design: Mesh, tolerance: float, progress: Report = 
     where more is left, by cyan to blue where less; of the middles of the triangles. Cancelled."""
     if not mesh.triangle_count:
         return []
-    vertices, triangles = mesh.vertices.tolist(), mesh.triangles.tolist()
+    vertices, triangles = rows(mesh.vertices), rows(mesh.triangles)
     solid = Solid(design, progress=share(progress, 0, 0.2))
     values, middles = array.array("d"), []
     for a, b, c in told(triangles, len(triangles), share(progress, 0.2, 0.9)):

@@ -79,7 +79,9 @@ def check_outputs(paths: Sequence[Optional[str]], sources: Sequence[Optional[str
     for path in given:
         check_writable(path)
         for number, source in enumerate(sources):
-            if source is not None and os.path.exists(path) and os.path.exists(source) and os.path.samefile(path, source):
+            if source is None or not (os.path.exists(path) and os.path.exists(source)):
+                continue
+            if os.path.samefile(path, source):
                 raise ValueError(f"{path}: is {'read, too' if number else 'the input'}; an output must not replace it")
     places = [os.path.realpath(path) for path in given]
     for path, place in zip(given, places):

@@ -11,12 +11,13 @@ import zlib
 from typing import Any, Callable, Optional, Sequence
 
 from . import plots
-from ._native import Camera, Scene, deviation_colours
+from ._native import Camera, Picture, Scene, deviation_colours
+from .aliases import View
 from .loads import KINDS
 from .verify import Verdict, Verification
 
 #: Pictures of the whole part, and how many of the worst places get one of their own.
-VIEWS = ("isometric", "top", "front", "right")
+VIEWS: Sequence[View] = ("isometric", "top", "front", "right")
 PLACES_SHOWN = 6
 SIZE = (760, 570)
 PLACE_SIZE = (480, 360)
@@ -26,20 +27,25 @@ STYLE = """
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 62rem; padding: 2rem 1.5rem 3rem; color: var(--ink); background: #fff;
   font: 15px/1.45 system-ui, "DejaVu Sans", sans-serif; }
-h1 { margin: 0; font-size: 1.7rem; } h2 { margin: 2.2rem 0 .6rem; font-size: 1.15rem; border-bottom: 1px solid var(--rule); }
+h1 { margin: 0; font-size: 1.7rem; }
+h2 { margin: 2.2rem 0 .6rem; font-size: 1.15rem; border-bottom: 1px solid var(--rule); }
 p { margin: .4rem 0; } .dim { color: var(--dim); }
 header { display: flex; justify-content: space-between; align-items: flex-start; gap: 2rem; }
 .verdict { padding: .35rem 1.1rem; border: 2px solid; border-radius: .4rem; font-size: 1.5rem; font-weight: 700; }
-.passed { color: var(--ok); } .failed, .error { color: var(--bad); } .warning { color: var(--warn); } .note { color: var(--dim); }
+.passed { color: var(--ok); } .failed, .error { color: var(--bad); }
+.warning { color: var(--warn); } .note { color: var(--dim); }
 table { width: 100%; border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th { text-align: left; font-weight: 600; color: var(--dim); } th, td { padding: .25rem .5rem .25rem 0; vertical-align: top;
-  border-bottom: 1px solid var(--rule); } td.n, th.n { text-align: right; white-space: nowrap; }
+th { text-align: left; font-weight: 600; color: var(--dim); }
+th, td { padding: .25rem .5rem .25rem 0; vertical-align: top; border-bottom: 1px solid var(--rule); }
+td.n, th.n { text-align: right; white-space: nowrap; }
 .facts { display: grid; grid-template-columns: repeat(4, 1fr); gap: .8rem 1.5rem; margin-top: 1.2rem; }
 .facts div { border-top: 2px solid var(--ink); padding-top: .25rem; } .facts b { display: block; font-size: 1.15rem; }
 .place { white-space: nowrap; padding-right: .6rem; }
-.pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 1rem; } .places { grid-template-columns: repeat(3, 1fr); }
+.pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 1rem; }
+.places { grid-template-columns: repeat(3, 1fr); }
 figure { margin: 0; break-inside: avoid; } figure img { width: 100%; display: block; border: 1px solid var(--rule); }
-figcaption { font-size: .85rem; color: var(--dim); margin-top: .2rem; } svg { display: block; width: 100%; height: auto; }
+figcaption { font-size: .85rem; color: var(--dim); margin-top: .2rem; }
+svg { display: block; width: 100%; height: auto; }
 svg text { font: 11px system-ui, "DejaVu Sans", sans-serif; fill: var(--dim); }
 tr, svg { break-inside: avoid; } h2 { break-after: avoid; }
 @media print { @page { margin: 14mm; } body { max-width: none; padding: 0; font-size: 10.5px; }
@@ -67,7 +73,14 @@ def deviation_map(done: Verification, scene: Scene, camera: Camera, size: tuple[
                            colour=(0.8, 0.8, 0.8), background=(1.0, 1.0, 1.0, 1.0),
                            background_top=(1.0, 1.0, 1.0, 1.0))
     picture.show_deviation(done.design, max(done.tolerance), allowance=done.allowance)
-    return png(width, height, bytes(picture.rgba))
+    return png(width, height, pixels(picture))
+
+
+def pixels(picture: Picture) -> bytes:
+    """The colours of a picture, RGBA rows from the top; ValueError where they were not asked for."""
+    if picture.rgba is None:
+        raise ValueError("the picture has no colours: they were not asked for")
+    return bytes(picture.rgba)
 
 
 def image(data: bytes, alternative: str) -> str:
@@ -117,7 +130,8 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[Any]], numbers: Sequence
         return f"<{tag}{' class=n' if index in numbers else ''}>{text}</{tag}>"
 
     head = "".join(cell("th", index, text) for index, text in enumerate(heads))
-    body = "".join("<tr>" + "".join(cell("td", index, value) for index, value in enumerate(row)) + "</tr>" for row in rows)
+    body = "".join("<tr>" + "".join(cell("td", index, value) for index, value in enumerate(row)) + "</tr>"
+                   for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
@@ -141,8 +155,8 @@ def operations(report: dict[str, Any]) -> str:
     removed = report["removed_mm3_by_operation"]
     if "loads" not in report:
         total = sum(removed.values()) or 1.0
-        return table(["operation", "removed, mm³", "share"],
-                     [[name, f"{value:,.1f}", f"{100 * value / total:.1f} %"] for name, value in removed.items()], (1, 2))
+        parts = [[name, f"{value:,.1f}", f"{100 * value / total:.1f} %"] for name, value in removed.items()]
+        return table(["operation", "removed, mm³", "share"], parts, (1, 2))
     entries = report["loads"]["operations"]
     kinds = [kind for kind in KINDS if any(kind in entry["peaks"] for entry in entries)]
     heads = ["operation", "time", Markup("removed<br>mm³"), "climb", *(
@@ -152,16 +166,18 @@ def operations(report: dict[str, Any]) -> str:
         peaks = [Markup(f'{plots.nice(entry["peaks"][kind]["value"])}<br><span class=dim>line '
                         f'{entry["peaks"][kind]["line"]}</span>') if kind in entry["peaks"] else "–" for kind in kinds]
         climb = "–" if entry["climb"] is None or "engagement" not in entry["peaks"] else f"{100 * entry['climb']:.0f} %"
-        rows.append([entry["operation"], plots.clock(entry["seconds"]), f"{removed[entry['operation']]:,.1f}", climb, *peaks])
-    unseen = "; ".join(f"{html.escape(entry['operation'])} {entry['volume_unseen_mm3']:,.1f} of {entry['volume_mm3']:,.1f} mm³"
-                       for entry in entries if entry["volume_unseen_mm3"] > UNSEEN_SHARE * entry["volume_mm3"] > 0)
+        rows.append([entry["operation"], plots.clock(entry["seconds"]), f"{removed[entry['operation']]:,.1f}", climb,
+                     *peaks])
+    unseen = "; ".join(
+        f"{html.escape(entry['operation'])} {entry['volume_unseen_mm3']:,.1f} of {entry['volume_mm3']:,.1f} mm³"
+        for entry in entries if entry["volume_unseen_mm3"] > UNSEEN_SHARE * entry["volume_mm3"] > 0)
     unseen = f" So was cut: {unseen}." if unseen else ""
     chips = "" if "chip" in kinds else " Chip thickness is not known: no tool tells its number of teeth."
     return table(heads, rows, range(1, len(heads))) + (
         "<p class=dim>The greatest loads of each operation and the line that makes them; engagement is that of moves "
-        f"sideways. Climb: share of the volume that is cut in climb milling. Layers of "
-        f"about a voxel, {report['voxel_mm']:.2g} mm, and less may not be seen, nor what takes less than 20° of a tool's "
-        f"turn: a load there is greater than told.{unseen}{chips}</p>")
+        f"sideways. Climb: share of the volume that is cut in climb milling. Layers of about a voxel, "
+        f"{report['voxel_mm']:.2g} mm, and less may not be seen, nor what takes less than 20° of a tool's turn: a load "
+        f"there is greater than told.{unseen}{chips}</p>")
 
 
 def load_plots(done: Verification, report: dict[str, Any]) -> str:
@@ -174,13 +190,13 @@ def load_plots(done: Verification, report: dict[str, Any]) -> str:
 
 def close_ups(done: Verification, scene: Scene) -> list[str]:
     """Figures of the worst places."""
-    figures = []
+    figures: list[str] = []
     for number, finding in enumerate(done.findings, 1):
         if finding.cluster is None or finding.accepted is not None or len(figures) == PLACES_SHOWN:
             continue
         lo, hi = finding.cluster.box
-        margin = max(1.0, 0.35 * max(h - l for l, h in zip(lo, hi)))
-        box = (tuple(l - margin for l in lo), tuple(h + margin for h in hi))
+        margin = max(1.0, 0.35 * max(high - low for low, high in zip(lo, hi)))
+        box = ([low - margin for low in lo], [high + margin for high in hi])
         camera = Camera.view("isometric", box, PLACE_SIZE[0] / PLACE_SIZE[1])
         data = deviation_map(done, scene, camera, PLACE_SIZE)
         figures.append(f"<figure>{image(data, f'finding {number}')}<figcaption><b>{number}</b> "
@@ -214,9 +230,9 @@ def make(done: Verification, report: dict[str, Any], progress: Optional[Callable
     plus, minus = done.tolerance
     volumes, minutes = deviation.comparison, report["machine_seconds"] / 60
     percentiles = found["deviation_mm"]["percentiles"]
-    counts = [count(sum(finding.severity == severity and finding.accepted is None for finding in done.findings), severity)
-              for severity in ("error", "warning")]
-    accepted = sum(finding.accepted is not None for finding in done.findings)
+    severities = [finding.severity for finding in done.findings if finding.accepted is None]
+    counts = [count(severities.count("error"), "error"), count(severities.count("warning"), "warning")]
+    accepted = len(done.findings) - len(severities)
     if accepted:
         counts.append(f"{accepted} accepted")
     now = datetime.datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
@@ -226,12 +242,14 @@ def make(done: Verification, report: dict[str, Any], progress: Optional[Callable
         f"<header><div><h1>{html.escape(job.name)}</h1><p class=dim>{html.escape(report['input'])}<br>{now}</p></div>"
         f'<div class="verdict {verdict}">{verdict.upper()}</div></header>',
         f"<p>{', '.join(counts)}. Tolerance +{plus:g} / −{minus:g} mm"
-        f"{f', allowance {done.allowance:g} mm' if done.allowance else ''}. Voxel {report['voxel_mm']:.4g} mm; a value on "
-        f"a smooth face is good to {deviation.error:.2g} mm, within a voxel of an edge to {0.5 * report['voxel_mm']:.2g} "
-        "mm, where only what is beyond tolerance by more than that counts.</p>",
-        facts([("greatest excess, mm", f"{deviation.most:+.3f}"), ("greatest gouge, mm", f"{min(0.0, deviation.least):.3f}"),
+        f"{f', allowance {done.allowance:g} mm' if done.allowance else ''}. Voxel {report['voxel_mm']:.4g} mm; a value "
+        f"on a smooth face is good to {deviation.error:.2g} mm, within a voxel of an edge to "
+        f"{0.5 * report['voxel_mm']:.2g} mm, where only what is beyond tolerance by more than that counts.</p>",
+        facts([("greatest excess, mm", f"{deviation.most:+.3f}"),
+               ("greatest gouge, mm", f"{min(0.0, deviation.least):.3f}"),
                ("mean, mm", f"{deviation.mean:+.4f}"), ("root mean square, mm", f"{deviation.rms:.4f}"),
-               ("material left, mm³", f"{volumes.excess_mm3:,.1f}"), ("material missing, mm³", f"{volumes.gouge_mm3:,.1f}"),
+               ("material left, mm³", f"{volumes.excess_mm3:,.1f}"),
+               ("material missing, mm³", f"{volumes.gouge_mm3:,.1f}"),
                ("surface out of tolerance, mm²", f"{deviation.excess_area + deviation.gouge_area:,.1f}"),
                ("not reached, mm²", f"{deviation.not_reached_area:,.1f}")]),
         f"<h2>Deviation of the stock from the design</h2><div class=pictures>{''.join(pictures)}</div>",

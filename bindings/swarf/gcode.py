@@ -113,12 +113,13 @@ def moves_text(program: Program) -> Iterator[str]:
     sections = list(SECTION.iter_unpack(bytes(program.sections)))
     arcs = bytes(program.arcs)
     axes = list(AXES.iter_unpack(bytes(program.axes)))
-    row, current, section_now = 0, (0.0,) * 6, None
+    row, section_now = 0, -1
+    current: tuple[float, ...] = (0.0,) * 6
     for index, move in enumerate(MOVE.iter_unpack(program.moves)):
         *end, feed, line, arc, packed = move
         section, kind = section_and_kind(packed)
         if section != section_now:
-            old = None if section_now is None else sections[section_now]
+            old = None if section_now < 0 else sections[section_now]
             section_now = section
             yield from _section_lines(program, old, sections[section_now])
         if row < len(axes) and axes[row][0] <= index:

@@ -4,8 +4,8 @@
 A holder stands on the tool by its stickout: the distance from the tool's tip to the holder's lower face. What the
 library knows are envelopes that a check may rely on, built from three tables: what clamps (collet chucks with their
 nuts, shrink fits), the flange of the spindle's taper, and the projection, the length from the spindle's face to the
-lower face. Where standards leave a dimension to the maker it is the usual one of catalogues: measure your own holder, and
-give it as a profile, where a millimetre matters.
+lower face. Where standards leave a dimension to the maker it is the usual one of catalogues: measure your own holder,
+and give it as a profile, where a millimetre matters.
 
 Names: ``ER16`` (a chuck of 50 mm, whatever carries it), ``SK40-ER32``, ``HSK-A63-SHRINK12``.
 """
@@ -13,12 +13,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Sequence
 
 from ._native import Cutter, Error
+from .aliases import PartKind
+from .records import rows
 
-#: Collet chucks by size of ISO 15488 (DIN 6499), which sets collets, cones and threads: diameter and length of the usual
-#: nuts with a hexagon or slots, greatest shank. M: the slim nuts with slots.
+#: Collet chucks by size of ISO 15488 (DIN 6499), which sets collets, cones and threads: diameter and length of the
+#: usual nuts with a hexagon or slots, greatest shank. M: the slim nuts with slots.
 COLLETS = {
     "ER11": (19.0, 11.3, 7.0), "ER11M": (16.0, 12.0, 7.0), "ER16": (32.0, 17.5, 10.0), "ER16M": (22.0, 18.0, 10.0),
     "ER20": (35.0, 19.0, 13.0), "ER20M": (28.0, 19.0, 13.0), "ER25": (42.0, 20.0, 16.0), "ER25M": (35.0, 20.0, 16.0),
@@ -101,36 +103,37 @@ def find(name: str, projection: Optional[float] = None) -> Holder:
     return Holder(word, tuple(sections), bore)
 
 
-def hold(cutter: Cutter, holder: Holder | str, stickout: Optional[float], what: str = "tool") -> tuple[Cutter, list[str]]:
-    """A cutter in a holder (one of the library, or text as find() or Cutter() of a form takes it), instead of the one that
-    it has -> the cutter and what is doubtful about it. Between tool and holder goes a shank as wide as the tool's upper
-    end. ValueError, which begins with ``what``, for a holder without stickout, or one that is impossible."""
+def hold(cutter: Cutter, holder: Holder | str, stickout: Optional[float],
+         what: str = "tool") -> tuple[Cutter, list[str]]:
+    """A cutter in a holder (one of the library, or text as find() or Cutter() of a form takes it), instead of the one
+    that it has -> the cutter and what is doubtful about it. Between tool and holder goes a shank as wide as the tool's
+    upper end. ValueError, which begins with ``what``, for a holder without stickout, or one that is impossible."""
     if stickout is None:
         raise ValueError(f"{what}: a holder needs its stickout, the distance from the tool's tip to the holder in mm")
     if not (math.isfinite(stickout) and stickout > 0):
         raise ValueError(f"{what}: a stickout of {stickout:g} mm is impossible")
     try:
         if isinstance(holder, str) and holder.strip().lower().startswith("form:"):
-            name, bore, nodes = "own holder", None, _own(holder.strip(), stickout)
+            name, bore, profile = "own holder", None, _own(holder.strip(), stickout)
         else:
             found = find(holder) if isinstance(holder, str) else holder
-            name, bore, nodes = found.name, found.bore, found.nodes(stickout)
+            name, bore, profile = found.name, found.bore, found.nodes(stickout)
     except (ValueError, Error) as error:
         raise ValueError(f"{what}: {error}") from None
-    parts = [(kind, table.tolist()) for kind, table in cutter.parts if kind != "holder"]
-    top = max((rows[-1][1] for _, rows in parts), default=0.0)
+    parts: list[_Part] = [(kind, rows(table)) for kind, table in cutter.parts if kind != "holder"]
+    top = max((nodes[-1][1] for _, nodes in parts), default=0.0)
     notes = []
     flutes = cutter.extent("flutes")[1]
     if stickout < flutes:
-        notes.append(f"{what}: {name} holds it {stickout:g} mm above its tip, but its flutes are {flutes:g} mm long: they "
-                     "would be clamped")
+        notes.append(f"{what}: {name} holds it {stickout:g} mm above its tip, but its flutes are {flutes:g} mm long: "
+                     "they would be clamped")
     shank = _width_at(parts, top)
     if stickout > top:
         parts.append(("shank", [(0.0, top, 0.0), (shank, top, 0.0), (shank, stickout, 0.0), (0.0, stickout, 0.0)]))
     if bore is not None and 2 * shank > bore + 1e-6:
         notes.append(f"{what}: {name} takes shanks of up to {bore:g} mm, but it has {2 * shank:.4g} mm")
     try:
-        return Cutter.from_parts([*parts, ("holder", nodes)]), notes
+        return Cutter.from_parts([*parts, ("holder", profile)]), notes
     except (ValueError, Error) as error:
         raise ValueError(f"{what}: holder: {error}") from None
 
@@ -144,14 +147,18 @@ def describe(name: str, stickout: Optional[float]) -> str:
 def _own(text: str, stickout: float) -> list[tuple[float, float, float]]:
     """Nodes of a form, its lowest point moved to the stickout."""
     (_, table), = Cutter(text).parts
-    rows = table.tolist()
-    low = rows[0][1]
-    return [(r, z - low + stickout, bulge) for r, z, bulge in rows]
+    nodes = rows(table)
+    low = nodes[0][1]
+    return [(r, z - low + stickout, bulge) for r, z, bulge in nodes]
 
 
-def _width_at(parts: list[tuple[str, list[list[float]]]], top: float) -> float:
+#: Of a cutter: its kind and its nodes (r, z, bulge).
+_Part = tuple[PartKind, Sequence[Sequence[float]]]
+
+
+def _width_at(parts: Sequence[_Part], top: float) -> float:
     """Radius at the upper end of the parts."""
-    return max((row[0] for _, rows in parts for row in rows if row[1] > top - 1e-6), default=0.0)
+    return max((node[0] for _, nodes in parts for node in nodes if node[1] > top - 1e-6), default=0.0)
 
 
 def parse(word: str) -> tuple[int, str, Optional[float], Optional[float]]:

@@ -6,7 +6,7 @@ import argparse
 import os
 import sys
 from dataclasses import dataclass
-from typing import Any, Optional, Sequence
+from typing import Any, NamedTuple, Optional, Sequence
 
 from . import _native, gcode, holders, placement, readers, specs
 from .console import one_line
@@ -52,7 +52,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument("--job", metavar="NAME", action=OfSetUp, default=argparse.SUPPRESS,
                          help="the job in a .FCStd file, if it has several")
     command.add_argument("--then", metavar="INPUT", action=OfSetUp, default=argparse.SUPPRESS,
-                         help="the next set-up: it cuts what is left (repeatable); a --job and a --turn after it are its")
+                         help="the next set-up: it cuts what is left (repeatable); a --job and a --turn after it are "
+                         "its")
     command.add_argument("--turn", metavar="SPEC", action=OfSetUp, default=argparse.SUPPRESS,
                          help=f"how the stock lies in the set-up, {placement.HELP}")
     command.add_argument("--stock", metavar="SPEC", help=specs.STOCK_HELP)
@@ -103,9 +104,9 @@ def read_job(arguments: argparse.Namespace, bar: Bar) -> Job:
         if jobs:
             stock = {"kind": "result", "job": jobs[-1]}
         jobs.append(_read_set_up(arguments, set_up, stock, bar))
-    for number, (word, *_) in given.items():
+    for number, holding in given.items():
         if not any(number in job.tools for job in jobs):
-            raise ValueError(f"holder {word!r}: there is no tool {number}")
+            raise ValueError(f"holder {holding.word!r}: there is no tool {number}")
     return jobs[-1]
 
 
@@ -134,14 +135,23 @@ def _read_set_up(arguments: argparse.Namespace, set_up: SetUp, stock: Optional[d
     return job
 
 
-def _holders(words: Sequence[str]) -> dict[int, tuple[str, str, float, Any]]:
-    """Word, name, stickout and projection of ``--holder`` by tool; ValueError where a tool has two."""
-    found: dict[int, tuple[str, str, float, Any]] = {}
+class _Holding(NamedTuple):
+    """A word of ``--holder``, and what it says besides the tool."""
+
+    word: str
+    name: str
+    stickout: Optional[float]
+    projection: Optional[float]
+
+
+def _holders(words: Sequence[str]) -> dict[int, _Holding]:
+    """What ``--holder`` says by tool; ValueError where a tool has two."""
+    found: dict[int, _Holding] = {}
     for word in words:
         number, name, stickout, projection = holders.parse(word)
         if number in found:
             raise ValueError(f"holder {word!r}: tool {number} has one already")
-        found[number] = word, name, stickout, projection
+        found[number] = _Holding(word, name, stickout, projection)
     return found
 
 
@@ -150,7 +160,9 @@ def add_holders(job: Job, words: Sequence[str]) -> None:
     for number, (_, name, stickout, projection) in _holders(words).items():
         if number not in job.tools:
             continue
-        holder = name if name.lower().startswith("form:") else holders.find(name, projection)
+        holder: holders.Holder | str = name
+        if not name.lower().startswith("form:"):
+            holder = holders.find(name, projection)
         job.tools[number], notes = holders.hold(job.tools[number], holder, stickout, f"tool {number}")
         job.holders[number] = holders.describe(name, stickout)
         job.notes += notes
@@ -164,9 +176,10 @@ def check_gcode_job(job: Job, path: str) -> None:
         number, cutter = next(iter(job.tools.items()))
         job.tools[-1] = cutter
         job.tool_names[-1] = job.tool_names[number]
-        for known in (job.teeth, job.holders):
-            if number in known:
-                known[-1] = known[number]
+        if number in job.teeth:
+            job.teeth[-1] = job.teeth[number]
+        if number in job.holders:
+            job.holders[-1] = job.holders[number]
         job.notes.append(f"the program names no tool: tool {number} is used")
     missing = [number for number in used if number not in job.tools]
     if -1 in missing:

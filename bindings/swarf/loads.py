@@ -53,8 +53,8 @@ def merge(*several: Limits) -> dict[Optional[int], dict[str, float]]:
     result: dict[Optional[int], dict[str, float]] = {}
     for limits in several:
         for kind, most in limits.get(None, {}).items():
-            for entries in result.values():
-                entries.pop(kind, None)
+            for merged in result.values():
+                merged.pop(kind, None)
             result.setdefault(None, {})[kind] = most
         for tool, entries in limits.items():
             if tool is not None:
@@ -92,7 +92,7 @@ def read(path: str, material: Optional[str] = None) -> Limits:
         tools = entry.get("tools", {})
         if not isinstance(tools, dict) or not all(number.isdecimal() for number in tools):
             raise ValueError(f"{path}: {of}tools: wanted an object of tool numbers")
-        made = {None: entry.get("all", {}), **{int(number): limits for number, limits in tools.items()}}
+        made: Limits = {None: entry.get("all", {}), **{int(number): limits for number, limits in tools.items()}}
         check_limits(made, f"{path}: {of}limits")
         return made
 
@@ -124,8 +124,8 @@ class Peak:
 @dataclass
 class Summary:
     """Loads of one operation: seconds of it in which material is cut, mm3, peaks by kind of KINDS, and the share of the
-    volume that was cut in climb milling (None: nothing was cut). ``unseen``: mm3 of the volume that were layers too thin
-    for their engagement to be seen; peaks leave them out."""
+    volume that was cut in climb milling (None: nothing was cut). ``unseen``: mm3 of the volume that were layers too
+    thin for their engagement to be seen; peaks leave them out."""
 
     seconds: float = 0.0
     cutting: float = 0.0
@@ -155,7 +155,7 @@ class Excess:
 
 def _moves(program: Program) -> Iterable[tuple[int, int]]:
     """Tool and operation of each move."""
-    sections = [row[:2] for row in SECTION.iter_unpack(bytes(program.sections))]
+    sections = [(row[0], row[1]) for row in SECTION.iter_unpack(bytes(program.sections))]
     return (sections[section_and_kind(row[-1])[0]] for row in MOVE.iter_unpack(program.moves))
 
 

@@ -5,19 +5,23 @@ from __future__ import annotations
 import math
 from typing import Any, Optional, Sequence
 
-from ._native import Mesh, Surface
+from ._native import Mesh, Shell, Surface
+from .records import rows
+from .shapes import Vector, add, cross
 
 #: What a plane in words looks like.
 PLANE_HELP = "x=MM, y=MM, z=MM, or X,Y,Z,NX,NY,NZ: a point and the normal"
 
 
-def contains(outer: Any, inner: Any) -> bool:
+def contains(outer: Shell, inner: Shell) -> bool:
     """Whether a shell's box lies in another's."""
+    if outer.bounding_box is None or inner.bounding_box is None:
+        return False
     (outer_lo, outer_hi), (inner_lo, inner_hi) = outer.bounding_box, inner.bounding_box
     return all(a <= b for a, b in zip(outer_lo, inner_lo)) and all(a >= b for a, b in zip(outer_hi, inner_hi))
 
 
-def pieces(shells: Sequence[Any]) -> list[list[int]]:
+def pieces(shells: Sequence[Shell]) -> list[list[int]]:
     """Places of the shells of each piece, the largest piece first; a cavity belongs to the smallest solid round it."""
     solids = sorted((i for i, shell in enumerate(shells) if shell.volume_mm3 > 0), key=lambda i: -shells[i].volume_mm3)
     found = {i: [i] for i in solids}
@@ -60,8 +64,8 @@ def thinnest(mesh: Mesh) -> dict[str, Any]:
     least, where = min((value, index) for index, value in enumerate(values))
     if not math.isfinite(least):
         return {"least_mm": None, "place": None}
-    corners = mesh.triangles[where:where + 1].tolist()[0]
-    points = [mesh.vertices[corner:corner + 1].tolist()[0] for corner in corners]
+    (corners,) = rows(mesh.triangles[where:where + 1])
+    points = [rows(mesh.vertices[corner:corner + 1])[0] for corner in corners]
     return {"least_mm": least, "place": [sum(point[k] for point in points) / 3 for k in range(3)]}
 
 
@@ -72,8 +76,8 @@ FACES = ("other", "plane", "cylinder", "cone", "sphere", "torus")
 def faces(mesh: Mesh, surface: Surface, moves: Optional[int] = None) -> dict[str, float]:
     """Area of a mesh, mm2, by the kind of face that its triangles are on."""
     areas = dict.fromkeys(FACES, 0.0)
-    vertices = mesh.vertices.tolist()
-    for (*_, kind), (a, b, c) in zip(mesh.origins(surface, moves=moves).tolist(), mesh.triangles.tolist()):
-        u, v = ([q - p for p, q in zip(vertices[a], vertices[end])] for end in (b, c))
-        areas[FACES[kind]] += math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2
+    vertices: list[Vector] = [(x, y, z) for x, y, z in rows(mesh.vertices)]
+    for (*_, kind), (a, b, c) in zip(rows(mesh.origins(surface, moves=moves)), rows(mesh.triangles)):
+        u, v = (add(vertices[end], vertices[a], -1) for end in (b, c))
+        areas[FACES[kind]] += math.hypot(*cross(u, v)) / 2
     return areas

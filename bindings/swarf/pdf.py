@@ -41,7 +41,8 @@ def find() -> str:
 
 
 def write(text: str, path: str) -> None:
-    """Write an HTML text as PDF. ValueError without a converter, OSError where it fails; then the file stays as it was."""
+    """Write an HTML text as PDF. ValueError without a converter, OSError where it fails; then the file stays as it
+    was."""
     name = find()
     with tempfile.TemporaryDirectory(prefix="swarf-") as folder:
         source, target = os.path.join(folder, "report.html"), os.path.join(folder, "report.pdf")

@@ -7,8 +7,8 @@ A turn is a list of words with commas between them::
     top=0             moved so that its top comes to Z 0; so bottom, left and right (X), front and back (Y)
     dx=5              moved by 5 mm along X in the end; so dy, dz
 
-Turns come first, in their order, then sides, then shifts: "x180,top=0,left=0" turns a part over and puts its top and its
-left side to 0.
+Turns come first, in their order, then sides, then shifts: "x180,top=0,left=0" turns a part over and puts its top and
+its left side to 0.
 """
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ import math
 from dataclasses import dataclass
 from typing import Any, Callable, Sequence, Union
 
+from .aliases import Box
+
 #: Three rows of a rotation and a shift in mm: p -> rotation * p + shift.
 Rows = Sequence[Sequence[float]]
-Box = tuple[Sequence[float], Sequence[float]]
 
 IDENTITY: Rows = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))
 
@@ -126,7 +127,8 @@ def parse(text: str) -> Turn:
             rotation = after(rotation_about("xyz".index(name), number), rotation)
         elif equals and name in SIDES:
             if any(SIDES[name][0] == SIDES[side][0] for side in sides):
-                raise ValueError(f"turn {text!r}: {name!r} and another side both say where it lies along {'XYZ'[SIDES[name][0]]}")
+                raise ValueError(f"turn {text!r}: {name!r} and another side both say where it lies along "
+                                 f"{'XYZ'[SIDES[name][0]]}")
             sides[name] = number
         elif equals and name in ("dx", "dy", "dz"):
             shift["xyz".index(name[1])] += number

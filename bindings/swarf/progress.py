@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import shutil
 import sys
+import time
 from typing import Any, Callable, Iterable, Iterator, Optional, TextIO, TypeVar
 
 from ._native import Cancelled
+from .aliases import Progress as Report
+
+__all__ = ["Bar", "Report", "Stages", "TURNS", "check", "share", "told"]
 
 T = TypeVar("T")
-
-#: Called with the fraction that is done; a true answer cancels, an exception cancels and comes out.
-Report = Optional[Callable[[float], Any]]
 
 #: Turns of a loop between two reports: some milliseconds.
 TURNS = 4096
@@ -37,6 +38,33 @@ def told(items: Iterable[T], count: int, progress: Report) -> Iterator[T]:
         if number % TURNS == 0:
             check(progress, number / count)
         yield item
+
+
+class Stages:
+    """Work in named stages: its progress by stage, and ``seconds`` of each and of all."""
+
+    def __init__(self, progress: Optional[Callable[[str, float], Any]]) -> None:
+        self.seconds: dict[str, float] = {}
+        self._progress = progress
+        self._begun = time.perf_counter()
+
+    def run(self, stage: str, work: Callable[[Report], T]) -> T:
+        """What the work, called with its progress, returns."""
+        begun = time.perf_counter()
+        try:
+            return work(self._report(stage))
+        finally:
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - begun
+
+    def _report(self, stage: str) -> Report:
+        if self._progress is None:
+            return None
+        whole = self._progress
+        return lambda fraction: whole(stage, fraction)
+
+    def end(self) -> None:
+        """All stages are done."""
+        self.seconds["total"] = time.perf_counter() - self._begun
 
 
 class Bar:

@@ -4,7 +4,7 @@ them; rows of tables."""
 from __future__ import annotations
 
 import struct
-from typing import Any
+from typing import Any, cast
 
 #: end x y z in mm, feed in mm/min (of a dwell: seconds), line, arc or -1, section * 8 + kind
 MOVE = struct.Struct("=dddfIiI")
@@ -23,5 +23,4 @@ def section_and_kind(packed: int) -> tuple[int, int]:
 
 def rows(table: memoryview) -> list[list[Any]]:
     """The rows of a view of two dimensions."""
-    found: Any = table.tolist()  # which type checkers take to be of one dimension
-    return found
+    return cast("list[list[Any]]", table.tolist())  # which type checkers take to be of one dimension

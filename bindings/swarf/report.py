@@ -7,9 +7,9 @@ from typing import Any, Optional
 
 from . import _native, loads, parts, timing
 from .files import write_text
-from .job import Job
+from .job import Job, operation_of
 from .simulate import Result
-from .verify import Verification, operation_of
+from .verify import Verification
 
 
 def _unique(names: tuple[str, ...]) -> list[str]:
@@ -98,7 +98,8 @@ def make(
         "memory_peak_mb": round(_native.memory_peak() / 1e6, 3),
         "bounding_box": None if box is None else {"lo": list(box[0]), "hi": list(box[1])},
         "mesh": _mesh(result),
-        "solids": [{"file": solid.path, "faces": solid.faces, "facets_because": solid.reason} for solid in result.solids],
+        "solids": [{"file": solid.path, "faces": solid.faces, "facets_because": solid.reason}
+                   for solid in result.solids],
         "findings": _findings(names, simulation),
         "notes": list(job.notes),
         "loose_pieces": [

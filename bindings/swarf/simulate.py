@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
-import time
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Sequence
 
 from . import colours, loose, solids
 from ._native import Camera, Comparison, Contour, Mesh, Scene, Simulation, Stock, Surface, compare_volume
+from .aliases import View
 from .job import Job
 from .parts import largest
+from .progress import Stages
 from .stocks import DEFAULT_RESOLUTION, make_first, make_stock, stock_box, voxel_of
 
 __all__ = [
@@ -44,10 +45,10 @@ class Result:
     seconds: dict[str, float] = field(default_factory=dict)
     before: list[tuple[Job, Simulation]] = field(default_factory=list)  #: of the set-ups before, the first one first
     surface: Optional[Surface] = None  #: exact, where a mesh or a picture was made
-    solids: list[solids.Written] = field(default_factory=list)  #: .step files, and why they are of facets where they are
+    solids: list[solids.Written] = field(default_factory=list)  #: .step files; why they are of facets where they are
     loose: loose.LoosePieces = field(default_factory=loose.LoosePieces)  #: what hangs on nothing any more
     dropped_mm3: float = 0.0  #: of it, where it was left out
-    resampled_voxels: float = 0.0  #: how far the first stock's voxels may be off for being turned; 0: they are as they were
+    resampled_voxels: float = 0.0  #: how far the first stock's voxels may be off for being turned; 0: as they were
 
     @property
     def failed(self) -> bool:
@@ -68,7 +69,7 @@ def simulate(
     outputs: Sequence[str] = (),
     picture: Optional[str] = None,
     picture_size: tuple[int, int] = (1600, 1200),
-    view: str = "isometric",
+    view: View = "isometric",
     colour: Optional[str] = None,
     tolerance: float = 0.05,
     allowance: float = 0.0,
@@ -77,81 +78,102 @@ def simulate(
 ) -> Result:
     """Cut a job's stock with its program; compare, mesh, picture and write what is asked for.
 
-    Where the stock is what another job leaves, that is played first. ``voxel`` in mm, or ``resolution`` voxels along the
-    stock's longest edge (512 unless told); ``batch`` as in Stock.simulate(). The stock is compared with the design when
-    the job has one. A mesh is made when ``mesh`` is true or an output needs it; where exactly one .stl file does, with
-    no ``colour`` and nothing dropped, it is streamed there (Mesh.stream()): then the result has its ``contour``, but no
-    mesh. ``outputs`` are .stl, .ply, .obj, .3mf, .glb, .vdb and .step (.stp) files, ``picture`` a .png file; a .step file
-    has faces as they were cut where that is possible, else facets, and ``solids`` of the result tells why. ``colour`` (operation,
-    deviation, thickness) is what the mesh files are coloured by, deviations green within ``tolerance`` of the design and
-    ``allowance``, which is meant to be left on it (mm). Pieces that come loose are in the result, with the moves that
-    free them; ``drop_loose`` leaves them out of all that follows. Seconds of each stage are in the result. Raises what
-    the stages raise; nothing is written before the cutting is done.
+    Where the stock is what another job leaves, that is played first. ``voxel`` in mm, or ``resolution`` voxels along
+    the stock's longest edge (512 unless told); ``batch`` as in Stock.simulate(). The stock is compared with the design
+    when the job has one. A mesh is made when ``mesh`` is true or an output needs it; where exactly one .stl file does,
+    with no ``colour`` and nothing dropped, it is streamed there (Mesh.stream()): then the result has its ``contour``,
+    but no mesh. ``outputs`` are .stl, .ply, .obj, .3mf, .glb, .vdb and .step (.stp) files, ``picture`` a .png file; a
+    .step file has faces as they were cut where that is possible, else facets, and ``solids`` of the result tells why.
+    ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by, deviations green within
+    ``tolerance`` of the design and ``allowance``, which is meant to be left on it (mm). Pieces that come loose are in
+    the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. Seconds of each stage
+    are in the result. Raises what the stages raise; nothing is written before the cutting is done.
     """
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")
-    for path in outputs:
-        output_suffix(path)
-
-    seconds: dict[str, float] = {}
-
-    def timed(stage: str, work: Callable[[Optional[Callable[[float], Any]]], Any]) -> Any:
-        started = time.perf_counter()
-        report = None if progress is None else lambda fraction: progress(stage, fraction)
-        try:
-            return work(report)
-        finally:
-            seconds[stage] = seconds.get(stage, 0.0) + time.perf_counter() - started
-
-    started = time.perf_counter()
-    first = timed("stock", lambda report: make_first(job.stock, voxel=voxel, resolution=resolution, progress=report))
+    suffixes = {output_suffix(path) for path in outputs}
+    meshed = mesh or not suffixes.isdisjoint(MESH_SUFFIXES)
+    stages = Stages(progress)
+    first = stages.run("stock", lambda report: make_first(
+        job.stock, voxel=voxel, resolution=resolution, progress=report))
+    exact: Optional[Surface] = None
+    if meshed or picture is not None or not suffixes.isdisjoint(solids.SUFFIXES):
+        # before the cut: the exact surface begins with the stock as it was
+        exact = stages.run("stock", lambda report: first.surface(job.program, job.tools, progress=report))
     stock = first.stock
-    meshed, exact = mesh or any(output_suffix(path) in MESH_SUFFIXES for path in outputs), None
-    solid = any(output_suffix(path) in solids.SUFFIXES for path in outputs)
-    if meshed or solid or picture is not None:  # before the cut: the exact surface begins with the stock as it was
-        exact = timed("stock", lambda report: first.surface(job.program, job.tools, progress=report))
-    simulation = timed("cut", lambda report: stock.simulate(job.program, job.tools, batch=batch, progress=report))
-    result = Result(job, stock, simulation, seconds=seconds, before=first.played, surface=exact,
+    simulation = stages.run("cut", lambda report: stock.simulate(job.program, job.tools, batch=batch, progress=report))
+    result = Result(job, stock, simulation, seconds=stages.seconds, before=first.played, surface=exact,
                     resampled_voxels=first.resampled_voxels)
-    result.loose = timed("loose", lambda report: loose.find(
+    result.loose = stages.run("loose", lambda report: loose.find(
         job, stock, lambda part: make_stock(job.stock, voxel=stock.voxel, progress=part), report))
-    streamed = meshed and not (mesh or drop_loose or colour) and streams(
-        [path for path in outputs if output_suffix(path) in MESH_SUFFIXES])
-    if meshed and not streamed:
-        result.mesh = timed("mesh", lambda report: Mesh.from_stock(stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact,
-                                                                   progress=report))
-        result.contour = result.mesh.contour
-    cut = stock
+    if meshed and (mesh or drop_loose or colour or not streams(
+            [path for path in outputs if output_suffix(path) in MESH_SUFFIXES])):
+        whole = stages.run("mesh", lambda report: Mesh.from_stock(
+            stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact, progress=report))
+        result.mesh, result.contour = whole, whole.contour
     if drop_loose and (result.loose.pieces or result.loose.crumbs):
-        whole = timed("mesh", lambda report: Mesh.from_stock(stock, progress=report)) if result.mesh is None else result.mesh
-        result.stock = stock = timed("mesh", lambda report: Stock.from_mesh(largest(whole), stock.voxel, progress=report))
-        result.mesh = None if result.mesh is None else largest(whole)
-        result.dropped_mm3 = simulation.volume_final - stock.volume()
+        _drop_loose(result, stages)
     if compare and job.design is not None:
-        result.comparison = timed("compare", lambda report: compare_volume(stock, job.design, progress=report))
+        result.comparison = _compare(result.stock, job.design, stages)
     tints = None
     if colour is not None and result.mesh is not None:
-        tints = timed("mesh", lambda report: colours.make(
-            colour, result.mesh, exact, job, tolerance, progress=report, allowance=allowance))
+        tints = _tints(colour, result.mesh, result, tolerance, allowance, stages)
     for path in outputs:
-        if output_suffix(path) in MESH_SUFFIXES and streamed:
-            result.contour = timed("mesh", lambda report: Mesh.stream(
-                stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=exact, progress=report))
-        elif output_suffix(path) in MESH_SUFFIXES:
-            timed("write", lambda report: result.mesh.write(path, colors=tints, progress=report))
+        if output_suffix(path) in MESH_SUFFIXES:
+            _write_mesh(path, result, tints, stages)
         elif output_suffix(path) in STOCK_SUFFIXES:
-            timed("write", lambda report: stock.write(path, progress=report))
-    if picture is not None:
-        width, height = picture_size
-        camera, scene = Camera.view(view, stock.bounding_box(), width / height), Scene(stock)
-        scene.show_surface(exact)
-        timed("picture", lambda report: scene.render(camera, width, height, progress=report).write(picture))
-    for path in outputs:  # these last: they may be refused
-        if output_suffix(path) in solids.SUFFIXES:
-            result.solids.append(timed("write", lambda report: solids.write(
-                cut, exact, path, error=MESH_ERROR_VOXELS * cut.voxel, only_largest=drop_loose, progress=report)))
-    seconds["total"] = time.perf_counter() - started
+            stages.run("write", lambda report: result.stock.write(path, progress=report))
+    if exact is not None:
+        if picture is not None:
+            _draw(picture, result.stock, exact, view, picture_size, stages)
+        for path in outputs:  # these last: they may be refused
+            if output_suffix(path) in solids.SUFFIXES:
+                result.solids.append(_write_solid(path, stock, exact, drop_loose, stages))
+    stages.end()
     return result
+
+
+def _drop_loose(result: Result, stages: Stages) -> None:
+    """Leave the largest piece of a result alone."""
+    stock, whole = result.stock, result.mesh
+    kept = largest(stages.run("mesh", lambda report: Mesh.from_stock(stock, progress=report))
+                   if whole is None else whole)
+    result.stock = stages.run("mesh", lambda report: Stock.from_mesh(kept, stock.voxel, progress=report))
+    result.mesh = None if whole is None else kept
+    result.dropped_mm3 = result.simulation.volume_final - result.stock.volume()
+
+
+def _compare(stock: Stock, design: Mesh, stages: Stages) -> Comparison:
+    return stages.run("compare", lambda report: compare_volume(stock, design, progress=report))
+
+
+def _tints(colour: str, mesh: Mesh, result: Result, tolerance: float, allowance: float,
+           stages: Stages) -> list[colours.RGB]:
+    return stages.run("mesh", lambda report: colours.make(
+        colour, mesh, result.surface, result.job, tolerance, progress=report, allowance=allowance))
+
+
+def _write_mesh(path: str, result: Result, tints: Optional[list[colours.RGB]], stages: Stages) -> None:
+    """The result's mesh to a file; streamed there where it has none."""
+    if result.mesh is None:
+        stock = result.stock
+        result.contour = stages.run("mesh", lambda report: Mesh.stream(
+            stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=result.surface, progress=report))
+        return
+    mesh = result.mesh
+    stages.run("write", lambda report: mesh.write(path, colors=tints, progress=report))
+
+
+def _draw(path: str, stock: Stock, surface: Surface, view: View, size: tuple[int, int], stages: Stages) -> None:
+    """A picture of what is left to a file."""
+    camera, scene = Camera.view(view, stock.bounding_box(), size[0] / size[1]), Scene(stock)
+    scene.show_surface(surface)
+    stages.run("picture", lambda report: scene.render(camera, *size, progress=report).write(path))
+
+
+def _write_solid(path: str, cut: Stock, surface: Surface, only_largest: bool, stages: Stages) -> solids.Written:
+    return stages.run("write", lambda report: solids.write(
+        cut, surface, path, error=MESH_ERROR_VOXELS * cut.voxel, only_largest=only_largest, progress=report))
 
 
 def streams(paths: Sequence[str]) -> bool:

@@ -10,6 +10,7 @@ from . import brep, step
 from ._native import Mesh, Stock, Surface
 from .parts import largest, pieces
 from .progress import Report, check, share
+from .records import rows
 from .shapes import PLANE, Shape, add, cross, unit
 from .wording import Said
 
@@ -42,7 +43,8 @@ def facets(mesh: Mesh, progress: Report = None) -> brep.Brep:
     if not mesh.triangle_count or not mesh.closed:
         raise ValueError("a solid is made of a closed mesh")
     if mesh.triangle_count > FACETS_MAX:
-        raise ValueError(f"{mesh.triangle_count} triangles are too many for facets, of which {FACETS_MAX} are written at most")
+        raise ValueError(f"{mesh.triangle_count} triangles are too many for facets, of which {FACETS_MAX} are written "
+                         "at most")
     made = brep.Brep([], [], [], [], 0.0)
     shells = pieces(mesh.shells())
     if any(len(shell) > 1 for shell in shells):
@@ -56,9 +58,9 @@ def facets(mesh: Mesh, progress: Report = None) -> brep.Brep:
 def _add(made: brep.Brep, mesh: Mesh) -> None:
     """One shell more."""
     corner, first = len(made.corners), len(made.faces)
-    made.corners.extend(tuple(place) for place in memoryview(mesh.vertices).tolist())
+    made.corners.extend((x, y, z) for x, y, z in rows(mesh.vertices))
     edges: defaultdict[tuple[int, int], list[int]] = defaultdict(list)  #: with one triangle so far
-    for triangle in memoryview(mesh.triangles).tolist():
+    for triangle in rows(mesh.triangles):
         a, b, c = (made.corners[corner + vertex] for vertex in triangle)
         loop = []
         for start, end in zip(triangle, (*triangle[1:], triangle[0])):
@@ -93,15 +95,16 @@ def write_facets(mesh: Mesh, path: str, reason: str, progress: Report = None) ->
     try:
         made = facets(mesh, share(progress, 0, 0.7))
     except ValueError as problem:
-        raise ValueError(f"{path}: cannot be written: {problem}; faces as they were cut are not possible: {reason}") from None
+        raise ValueError(f"{path}: cannot be written: {problem}; faces as they were cut are not possible: "
+                         f"{reason}") from None
     return _written(made, path, reason, share(progress, 0.7, 1))
 
 
 def write(stock: Stock, surface: Surface, path: str, *, error: float, only_largest: bool = False,
           progress: Report = None) -> Written:
-    """A STEP file of what is left of a stock after all moves of its Surface; of facets, with this error (mm), where it is
-    not bounded by planes, cylinders, cones, spheres and tori alone. ValueError where it is too much even for facets, or
-    nothing is left; OSError."""
+    """A STEP file of what is left of a stock after all moves of its Surface; of facets, with this error (mm), where it
+    is not bounded by planes, cylinders, cones, spheres and tori alone. ValueError where it is too much even for facets,
+    or nothing is left; OSError."""
     mesh = Mesh.from_stock(stock, ERROR_VOXELS * stock.voxel, surface=surface, progress=share(progress, 0, 0.4))
     mesh = largest(mesh) if only_largest else mesh
     try:

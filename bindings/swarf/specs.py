@@ -67,7 +67,8 @@ def tool(spec: str) -> tuple[int, Cutter, str, int]:
 
 
 def tools(texts: Sequence[str]) -> dict[int, tuple[Cutter, str, int]]:
-    """Cutter, text and teeth (0: not told) of several ``--tool`` by number. ValueError where a number is given twice."""
+    """Cutter, text and teeth (0: not told) of several ``--tool`` by number. ValueError where a number is given
+    twice."""
     found: dict[int, tuple[Cutter, str, int]] = {}
     for given in texts:
         number, cutter, text, teeth = tool(given)

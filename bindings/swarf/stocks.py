@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, field
-from typing import Any, Callable, Optional, Sequence
+from typing import Any, Callable, Optional
 
 from ._native import Cutter, GeometryError, Mesh, Program, Simulation, Stock, Surface
+from .aliases import Box
 from .job import Job
-from .placement import IDENTITY, Box, Rows, box_of, direction, is_quarter, point, rows_of
+from .placement import IDENTITY, Rows, box_of, direction, is_quarter, point, rows_of
 from .progress import Report, share
 
 #: Voxels along the longest edge of the stock where nobody says how fine: fast on any machine, and fine enough to see.
@@ -69,8 +70,8 @@ def _bare_box(description: dict[str, Any]) -> Box:
 
 
 def stock_box(description: Optional[dict[str, Any]]) -> Box:
-    """Bounding box (lo, hi) of a stock as a Job describes it, before it is made; not for kind "vdb". Of what another job
-    leaves, the box is that of its own stock."""
+    """Bounding box (lo, hi) of a stock as a Job describes it, before it is made; not for kind "vdb". Of what another
+    job leaves, the box is that of its own stock."""
     if description is None:
         raise ValueError("no stock: the job does not say what is being milled")
     box = _bare_box(description)
@@ -84,7 +85,7 @@ def voxel_of(description: dict[str, Any], resolution: float) -> float:
     if not (math.isfinite(resolution) and resolution >= 1):
         raise ValueError(f"resolution {resolution:g}: not a number of voxels (1 or more)")
     lo, hi = stock_box(description)
-    edge = max(h - l for l, h in zip(lo, hi))
+    edge = max(high - low for low, high in zip(lo, hi))
     if not edge > 0:
         raise ValueError("the stock has no extent: its high corner must lie above its low corner")
     return edge / resolution
@@ -97,9 +98,10 @@ def _box_mesh(box: Box) -> Mesh:
     return Mesh(corners, [triangle for a, b, c, d in quads for triangle in ((a, b, c), (a, c, d))])
 
 
-def _make_shape(description: dict[str, Any], voxel: float, rows: Optional[Rows], progress: Report) -> Stock:
+def _make_shape(description: dict[str, Any], voxel: float, progress: Report) -> Stock:
     """Box, cylinder or mesh, placed: the shape is turned, not its voxels."""
     kind = description["kind"]
+    rows = rows_of(description["placement"], lambda: _bare_box(description)) if "placement" in description else None
     if kind == "cylinder":
         base, axis = description["base"], description["axis"]
         if rows is not None:
@@ -152,17 +154,19 @@ def _play_before(description: dict[str, Any], voxel: Optional[float], depth: int
     job: Job = description["job"]
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")
-    kept = description.get("path")
-    left = None if kept is None else Stock.read(kept, progress=share(progress, 0, 0.3))
-    first = _make(job.stock, left.voxel if left is not None else voxel, None, depth + 1, play,
+    path = description.get("path")
+    kept = None if path is None else Stock.read(path, progress=share(progress, 0, 0.3))
+    first = _make(job.stock, kept.voxel if kept is not None else voxel, None, depth + 1, play,
                   share(progress, 0.3, 0.45))
     before = first.surface(job.program, job.tools, progress=share(progress, 0.45, 0.5))
-    if left is None:
+    if kept is None:
         left = first.stock
         first.played.append((job, play(job, left, share(progress, 0.5, 0.8))))
     else:
-        first.kept.append((job, os.fspath(kept)))
-    rows = rows_of(description.get("placement", IDENTITY), lambda: _box_left(left, before, job.name, share(progress, 0.8, 0.85)))
+        left = kept
+        first.kept.append((job, os.fspath(description["path"])))
+    rows = rows_of(description.get("placement", IDENTITY),
+                   lambda: _box_left(left, before, job.name, share(progress, 0.8, 0.85)))
     try:
         stock = left.placed(rows, voxel=voxel, surface=before, progress=share(progress, 0.85, 1))
     except GeometryError as error:
@@ -189,8 +193,7 @@ def _make(description: Optional[dict[str, Any]], voxel: Optional[float], resolut
         raise ValueError(f"stock of kind {kind!r} is not known: box, cylinder, mesh, vdb, result")
     if voxel is None:
         voxel = voxel_of(description, DEFAULT_RESOLUTION if resolution is None else resolution)
-    rows = rows_of(description["placement"], lambda: _bare_box(description)) if "placement" in description else None
-    return First(_make_shape(description, voxel, rows, progress))
+    return First(_make_shape(description, voxel, progress))
 
 
 def make_first(
@@ -201,8 +204,9 @@ def make_first(
     play: Play = _simulate,
     progress: Report = None,
 ) -> First:
-    """The stock that a Job describes, at a voxel size (mm) or a resolution (voxels along the longest edge), with what is
-    known of it. Set-ups before it are played, by ``play``; a kept result has its voxel size, unless another is asked for."""
+    """The stock that a Job describes, at a voxel size (mm) or a resolution (voxels along the longest edge), with what
+    is known of it. Set-ups before it are played, by ``play``; a kept result has its voxel size, unless another is asked
+    for."""
     if voxel is not None and resolution is not None:
         raise ValueError("give the voxel size or the resolution, not both")
     if voxel is not None and not (math.isfinite(voxel) and voxel > 0):

@@ -37,12 +37,13 @@ def read_machine(path: str) -> dict[str, Any]:
 
 
 def summary(program: Program, limits: Optional[dict[str, Any]] = None) -> dict[str, Any]:
-    """Seconds in all, by tool number and by operation (in the program's order). ValueError for limits that cannot be."""
+    """Seconds in all, by tool number and by operation (in the program's order). ValueError for limits that cannot
+    be."""
     times = program.times(**(limits or {}))
-    sections = [row[:2] for row in SECTION.iter_unpack(bytes(program.sections))]
+    sections = [(row[0], row[1]) for row in SECTION.iter_unpack(bytes(program.sections))]
     by_section = [0.0] * len(sections)
-    for seconds, row in zip(times, MOVE.iter_unpack(program.moves)):
-        by_section[section_and_kind(row[-1])[0]] += seconds
+    for taken, row in zip(times, MOVE.iter_unpack(program.moves)):
+        by_section[section_and_kind(row[-1])[0]] += taken
     by_tool: dict[int, float] = {}
     by_operation = [0.0] * len(program.operations)
     for (tool, operation), seconds in zip(sections, by_section):

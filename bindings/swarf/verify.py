@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Optional, Sequence
 
@@ -13,10 +12,11 @@ from . import loose, readers
 from ._native import (Check, CheckFinding, Cluster, Deviation, Finding, GeometryError, Mesh, Scene, Simulation, Solid,
                       Stock, compare_overlap, compare_place, measure_deviation)
 from .accept import Acceptance
+from .aliases import Box, Severity
 from .job import Job, operation_of
 from .loads import Limits
 from .records import MOVE
-from .progress import Report, share
+from .progress import Report, Stages, share
 from .simulate import Progress, Result
 from .stocks import First, make_first
 from .wording import FORMS, Said, shortened
@@ -27,12 +27,12 @@ DESIGN_SUFFIXES = (".stl", ".ply", ".obj")
 
 @dataclass
 class Verdict:
-    """Something that was found: severity "error", "warning" or "note"; kind "gouge", "excess", "not reached" (deviation),
-    those of CheckFinding, "load", "uncut" (moves that were not simulated, operations that remove nothing), "design" or
-    "acceptance". ``amount`` is what was measured: mm of a deviation or contact, the value of a load. ``accepted`` is the
-    reason why it does not count, None: it does."""
+    """Something that was found: kind "gouge", "excess", "not reached" (deviation), those of CheckFinding, "load",
+    "uncut" (moves that were not simulated, operations that remove nothing), "design" or "acceptance". ``amount`` is
+    what was measured: mm of a deviation or contact, the value of a load. ``accepted`` is the reason why it does not
+    count, None: it does."""
 
-    severity: str
+    severity: Severity
     text: str  #: a wording.Said, but for what was an exception
     kind: str
     operation: Optional[str] = None
@@ -61,7 +61,7 @@ class Verification:
     complete: bool = False  #: whether material that no move went to counts as an error
     loads: Optional[dict[str, memoryview]] = None  #: Check.loads, None: not asked for
     limits: Limits = field(default_factory=dict)
-    region: Optional[Any] = None  #: box that the deviation was measured in
+    region: Optional[Box] = None  #: that the deviation was measured in
 
     @property
     def passed(self) -> bool:
@@ -72,8 +72,9 @@ class Verification:
               progress: Optional[Callable[[float], Any]] = None) -> Verification:
         """The same measurements by another tolerance (mm) for both sides, without simulating or measuring again."""
         job = self.result.job
-        deviation = self.deviation.judge(excess=tolerance, gouge=tolerance, allowance=self.allowance, region=self.region,
-                                         program=job.program, tools=job.tools, progress=progress)
+        deviation = self.deviation.judge(
+            excess=tolerance, gouge=tolerance, allowance=self.allowance, region=self.region, program=job.program,
+            tools=job.tools, progress=progress)
         found = [finding for finding in self.findings if finding.cluster is None]
         judged = replace(self, deviation=deviation, tolerance=(tolerance, tolerance))
         found += [_cluster_finding(judged, cluster) for cluster in deviation.clusters]
@@ -89,9 +90,9 @@ CAD_SUFFIXES = (".step", ".stp", ".brep", ".brp", ".iges", ".igs", ".fcstd")
 
 
 def read_design(path: str, tolerance: float = 0.05, progress: Optional[Callable[[float], Any]] = None) -> Mesh:
-    """The design (or a fixture) in a mesh file, or in a CAD file whose faces become triangles no farther away than a fifth
-    of the tolerance (mm). ValueError for an unknown suffix, and where the reader that it needs is missing; OSError,
-    FormatError, what the reader raises."""
+    """The design (or a fixture) in a mesh file, or in a CAD file whose faces become triangles no farther away than a
+    fifth of the tolerance (mm). ValueError for an unknown suffix, and where the reader that it needs is missing;
+    OSError, FormatError, what the reader raises."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix in DESIGN_SUFFIXES:
         return Mesh.read(path)
@@ -115,7 +116,7 @@ def verify(
     gouge: Optional[float] = None,
     allowance: float = 0.0,
     complete: bool = False,
-    region: Optional[Any] = None,
+    region: Optional[Box] = None,
     voxel: Optional[float] = None,
     resolution: Optional[float] = None,
     fixtures: Sequence[Mesh] = (),
@@ -130,57 +131,54 @@ def verify(
     ``tolerance`` in mm is for both sides; ``excess`` (material left) and ``gouge`` (material missing) set one of them.
     ``allowance`` is material that is meant to be left. Material left where no move went is a warning, with
     ``complete`` an error. Rapids through material, shanks and holders that touch it, and all else that Stock.check()
-    looks for are findings too, as are moves that cannot be simulated (turned axes) and operations that remove nothing, in
-    the set-ups before as well, each with its own tools, holders and fixtures;
-    ``fixtures``, with those of the job, and ``clearance``, of all set-ups, are handed to it. ``loads`` measures what each move asks of its
-    tool; beyond ``limits`` (see swarf.loads) it is a warning. Findings that ``accept`` or the job's document knows do not
-    fail.
+    looks for are findings too, as are moves that cannot be simulated (turned axes) and operations that remove nothing,
+    in the set-ups before as well, each with its own tools, holders and fixtures; ``fixtures``, with those of the job,
+    and ``clearance``, of all set-ups, are handed to it. ``loads`` measures what each move asks of its tool; beyond
+    ``limits`` (see swarf.loads) it is a warning. Findings that ``accept`` or the job's document knows do not fail.
     ValueError without a design or moves; GeometryError where the design encloses nothing; whatever make_first() and
     Stock.check() raise.
     """
-    mesh = job.design if design is None else design
-    if mesh is None:
-        raise ValueError(f"{job.name}: there is no design to verify against")
+    mesh = _design_of(job, design)
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to verify")
     tolerances = (tolerance if excess is None else excess, tolerance if gouge is None else gouge)
     limits = limits or {}
     loading.check_limits(limits)
-    seconds: dict[str, float] = {}
-
-    def timed(name: str, work: Callable[[Optional[Callable[[float], Any]]], Any]) -> Any:
-        started = time.perf_counter()
-        try:
-            return work(None if progress is None else lambda fraction: progress(name, fraction))
-        finally:
-            seconds[name] = time.perf_counter() - started
-
-    started = time.perf_counter()
-    solid = timed("design", lambda report: _solid(mesh, "design", report))
+    stages = Stages(progress)
+    solid = stages.run("design", lambda report: _solid(mesh, "design", report))
     fixtures = [*job.fixtures, *fixtures]
-    clamps = timed("fixtures", lambda report: solids_of(fixtures, report, len(job.fixtures)))
+    clamps = stages.run("fixtures", lambda report: solids_of(fixtures, report, len(job.fixtures)))
     earlier = SetUps(clearance)
-    made_first = timed("stock", lambda report: make_first(
+    made_first = stages.run("stock", lambda report: make_first(
         job.stock, voxel=voxel, resolution=resolution, play=earlier.play, progress=report))
     first, before = made_first.stock, made_first.played
     stock = first.copy()
-    checked = timed("cut", lambda report: stock.check(
+    checked = stages.run("cut", lambda report: stock.check(
         job.program, job.tools, fixtures=clamps, clearance=clearance, teeth=job.teeth, loads=loads or bool(limits),
         progress=report))
-    result = Result(job, stock, checked.simulation, seconds=seconds, before=before)
-    deviation = timed("compare", lambda report: measure_deviation(
+    result = Result(job, stock, checked.simulation, seconds=stages.seconds, before=before)
+    deviation = stages.run("compare", lambda report: measure_deviation(
         stock, solid, excess=tolerances[0], gouge=tolerances[1], allowance=allowance, region=region, first=first,
         program=job.program, tools=job.tools, progress=report))
     result.comparison = deviation.comparison
     made = Verification(result, solid, deviation, tolerances, allowance, complete=complete, loads=checked.loads,
                         limits=limits, region=region)
-    found = [*earlier.findings(made_first), *findings_of(job, checked, stock.voxel, clearance), *_load_findings(job, checked, limits),
-             *_design_findings(solid, first, mesh), *fixture_findings(first, clamps, len(job.fixtures)),
-             *timed("loose", lambda report: loose_findings(job, stock, first, report)),
+    found = [*earlier.findings(made_first), *findings_of(job, checked, stock.voxel, clearance),
+             *_load_findings(job, checked, limits), *_design_findings(solid, first, mesh),
+             *fixture_findings(first, clamps, len(job.fixtures)),
+             *stages.run("loose", lambda report: loose_findings(job, stock, first, report)),
              *(_cluster_finding(made, cluster) for cluster in deviation.clusters)]
     made.findings = settle(found, [*job.accepted, *accept])
-    seconds["total"] = time.perf_counter() - started
+    stages.end()
     return made
+
+
+def _design_of(job: Job, given: Optional[Mesh]) -> Mesh:
+    """The design that is given, else the job's own; ValueError where there is none."""
+    mesh = job.design if given is None else given
+    if mesh is None:
+        raise ValueError(f"{job.name}: there is no design to verify against")
+    return mesh
 
 
 def settle(findings: Sequence[Verdict], acceptances: Sequence[Acceptance]) -> list[Verdict]:
@@ -328,7 +326,8 @@ def place_text(kind: str, value: float, factor: float, first: Stock, mesh: Mesh)
 
 
 def solids_of(meshes: Sequence[Mesh], progress: Report = None, own: Optional[int] = None) -> list[Solid]:
-    """Solids of meshes, fixtures, of which the first ``own`` (None: all) are the job's. Cancelled, what Solid() raises."""
+    """Solids of meshes, fixtures, of which the first ``own`` (None: all) are the job's. Cancelled, what Solid()
+    raises."""
     return [_solid(mesh, _fixture(number, own), share(progress, number / len(meshes), (number + 1) / len(meshes)))
             for number, mesh in enumerate(meshes)]
 
@@ -355,8 +354,8 @@ def fixture_findings(first: Stock, solids: Sequence[Solid], own: Optional[int] =
     for number, solid in enumerate(solids):
         depth, place = compare_overlap(first, solid)
         if depth > 0.35 * first.voxel:
-            found.append(Verdict("warning", Said("fixture inside", fixture=_fixture(number, own), depth=depth), "fixture",
-                                 place=place, amount=depth, at_least=True))
+            text = Said("fixture inside", fixture=_fixture(number, own), depth=depth)
+            found.append(Verdict("warning", text, "fixture", place=place, amount=depth, at_least=True))
     return found
 
 
@@ -364,7 +363,8 @@ def _cluster_finding(made: Verification, cluster: Cluster) -> Verdict:
     operation, line = operation_of(made.result.job, cluster.moves[0]) if cluster.moves else (None, 0)
     amount = Said("amount at least" if cluster.at_least else "amount", value=abs(cluster.value), area=cluster.area,
                   volume=cluster.volume)
-    severity, key = "error", cluster.kind
+    severity: Severity = "error"
+    key: str = cluster.kind
     if cluster.kind == "gouge":
         key = "gouge" if cluster.moves else "gouge of no move"
     elif cluster.kind == "excess":

@@ -47,7 +47,8 @@ FORMS = {
     "place empty": "nothing is left of the stock",
     "place beside": "the design ({design}) lies beside the stock ({stock}): is it in another place?",
     "box": "{a:.6g}, {b:.6g}, {c:.6g} .. {d:.6g}, {e:.6g}, {f:.6g} mm",
-    "place out": "the design reaches {value:.4g} mm out of what is left of the stock: is it in the same place and unit?",
+    "place out":
+        "the design reaches {value:.4g} mm out of what is left of the stock: is it in the same place and unit?",
     "design open": "the design is not closed: {open} open edges, {turned} between triangles turned different ways; the "
                    "holes have at most {hole:.3g} mm2 and inside is told by the winding number",
     "design crossing": "{crossing} of the design's {all} triangles cross or touch others; it is taken as the union of "
@@ -77,7 +78,8 @@ FORMS = {
     "mm3/s": "mm3/s",
     # pieces
     "loose": "a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; this move frees it",
-    "loose before": "a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; it was before the program began",
+    "loose before":
+        "a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; it was before the program began",
     # set-ups and acceptances
     "set-up": "set-up '{job}': {text}",
     "set-up line": "set-up '{job}', line {line}: {text}",
@@ -90,8 +92,8 @@ FORMS = {
     # why a solid has facets
     "too many shapes": "it has faces of more than {most} shapes",
     "loops open": "the edges of a face do not close",
-    "unknown surface": "{percent:.1f} % of the surface is on planes, cylinders, cones, spheres and tori, but not what is "
-                       "near ({x:.2f}, {y:.2f}, {z:.2f})",
+    "unknown surface": "{percent:.1f} % of the surface is on planes, cylinders, cones, spheres and tori, but not what "
+                       "is near ({x:.2f}, {y:.2f}, {z:.2f})",
     "hollow": "there is a hollow inside",
     "faces apart": "its faces do not hang together",
     "edge lost": "an edge is not found near ({x:.3f}, {y:.3f}, {z:.3f})",
@@ -120,7 +122,8 @@ def shortened(name: str) -> str:
 
 class Said(str):
     """A sentence in English that can be said in another language: ``key`` of FORMS, ``values`` of it, which may hold
-    others. A text like any other. TypeError where there is no such sentence, as of a function that is called wrongly."""
+    others. A text like any other. TypeError where there is no such sentence, as of a function that is called
+    wrongly."""
 
     key: str
     values: dict[str, Any]

@@ -8,7 +8,7 @@ import swarf
 from swarf import _native
 
 STUB = ast.parse((pathlib.Path(_native.__file__).parent / "_native.pyi").read_text(encoding="utf-8"))
-CLASSES = {node.name: node for node in STUB.body if isinstance(node, ast.ClassDef)}
+CLASSES = {node.name: node for node in STUB.body if isinstance(node, ast.ClassDef) and not node.name.startswith("_")}
 FUNCTIONS = {node.name: node for node in STUB.body if isinstance(node, ast.FunctionDef)}
 
 
@@ -58,7 +58,7 @@ def test_members_of_classes():
         native = getattr(_native, name)
         assert ast.get_docstring(node) and native.__doc__, name
         if issubclass(native, tuple):
-            fields = [item.target.id for item in node.body if isinstance(item, ast.AnnAssign)]
+            fields = [item.name for item in node.body if isinstance(item, ast.FunctionDef)]
             assert fields == list(native.__match_args__), name
             continue
         members = {item.name: item for item in node.body if isinstance(item, ast.FunctionDef)}

@@ -30,12 +30,13 @@ def add(subparsers: Any) -> None:
     command.add_argument("--budget", metavar="N", type=int, default=0,
                          help="no more triangles than N, if the error allows")
     command.add_argument("--output", metavar="FILE", action="append", default=[],
-                         help=f"write the mesh: {' '.join(MESH_SUFFIXES)}, or .step, of facets (repeatable); one that does not fit into memory only to .stl")
+                         help=f"write the mesh: {' '.join(MESH_SUFFIXES)}, or .step, of facets (repeatable); one that "
+                         "does not fit into memory only to .stl")
     command.add_argument("--split", action="store_true",
                          help="write every piece that hangs together to a file of its own: FILE-1, FILE-2 ...")
     command.add_argument("--split-at", metavar="PLANE", type=_plane, action="append", default=[],
-                         help=f"cut it by a plane, each side closed by caps (repeatable); {PLANE_HELP}. Each side goes to "
-                         "a file of its own, or each piece of each side with --split")
+                         help=f"cut it by a plane, each side closed by caps (repeatable); {PLANE_HELP}. Each side goes "
+                         "to a file of its own, or each piece of each side with --split")
     command.add_argument("--thickness", action="store_true",
                          help="colour the files by wall thickness, and tell the least with --measure")
     command.add_argument("--measure", action="store_true", help="print measures of the whole and its shells as JSON")
@@ -104,7 +105,8 @@ def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> 
     outputs = sorted(arguments.output, key=is_solid)  # solids last: they may be refused
     parts = parts_of(mesh, arguments)
     if several:
-        check_outputs([numbered(path, number) for path in outputs for number in range(1, len(parts) + 1)], [arguments.input])
+        check_outputs([numbered(path, number) for path in outputs for number in range(1, len(parts) + 1)],
+                      [arguments.input])
     for number, part in enumerate(parts, 1):
         tints = colours.by_thickness(part) if arguments.thickness and part.triangle_count else None
         for path in outputs:

@@ -29,7 +29,8 @@ def add(subparsers: Any) -> None:
     command.add_argument("--tolerance", metavar="MM", type=float, default=0.05,
                          help="deviations up to this are coloured green (default 0.05)")
     command.add_argument("--allowance", metavar="MM", type=float, default=0.0,
-                         help="material meant to be left on the design: deviations are coloured by what is left beyond it")
+                         help="material meant to be left on the design: deviations are coloured by what is left beyond "
+                         "it")
     command.add_argument("--loose", choices=("keep", "drop"), default="keep",
                          help="pieces that have come loose: keep them, or leave them out (default: keep)")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
@@ -83,11 +84,14 @@ def run(arguments: argparse.Namespace) -> int:
     if cuts:
         told.append(f"warning: {cuts} pairs of triangles cut each other: the surface touches itself there")
     if result.resampled_voxels:
-        told.append(f"note: the stock was turned into new voxels, which are off by {result.resampled_voxels:g} voxels at "
-                    "most at its edges; quarter turns keep them as they are")
-    inputs.print_findings([
-        f"{finding.severity}: {f'{played.name}: ' if result.before else ''}line {finding.line}: {one_line(finding.text)}"
-        for played, simulation in (*result.before, (job, result.simulation)) for finding in simulation.findings] + told)
+        told.append(f"note: the stock was turned into new voxels, which are off by {result.resampled_voxels:g} voxels "
+                    "at most at its edges; quarter turns keep them as they are")
+    found = []
+    for played, simulation in (*result.before, (job, result.simulation)):
+        of = f"{played.name}: " if result.before else ""
+        found += [f"{finding.severity}: {of}line {finding.line}: {one_line(finding.text)}"
+                  for finding in simulation.findings]
+    inputs.print_findings(found + told)
     if sys.stdout.isatty():
         say([report.summary(made)])
     return FINDINGS if result.failed else DONE

@@ -40,8 +40,8 @@ def add(subparsers: Any) -> None:
     command.add_argument("--clearance", metavar="MM", type=float, default=0.0,
                          help="warn where the holder comes nearer to the stock")
     command.add_argument("--limit", metavar="[N:]KIND=VALUE", action="append", default=[], type=_limit,
-                         help="warn where a load exceeds this, of tool N or of all: "
-                              f"{', '.join(f'{kind} ({entry[1]})' for kind, entry in loads.KINDS.items())} (repeatable)")
+                         help="warn where a load exceeds this, of tool N or of all (repeatable): "
+                              + ", ".join(f"{kind} ({unit})" for kind, (_, unit, _) in loads.KINDS.items()))
     command.add_argument("--limits", metavar="FILE.json", help="limits from a file, see the README")
     command.add_argument("--material", metavar="NAME", help="the stock's, among those in the file of limits")
     command.add_argument("--no-loads", action="store_true", help="do not measure loads: faster")
@@ -79,7 +79,8 @@ def run(arguments: argparse.Namespace) -> int:
             except ValueError as error:
                 raise ValueError(f"{path}: {error}") from None
     sources = inputs.files_read(arguments)
-    check_outputs(arguments.report, (*sources, arguments.design, arguments.limits, arguments.accept, *arguments.fixture))
+    check_outputs(arguments.report, (
+        *sources, arguments.design, arguments.limits, arguments.accept, *arguments.fixture))
     if arguments.material is not None and arguments.limits is None:
         raise ValueError("--material chooses among the materials of a file of limits; give --limits FILE.json")
     limits = loads.merge({} if arguments.limits is None else loads.read(arguments.limits, arguments.material),
