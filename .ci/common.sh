@@ -15,7 +15,7 @@ packages_build=(g++ cmake ninja-build libopenvdb-dev libembree-dev libtbb-dev li
 packages_freecad=(freecad python3-numpy)
 packages_tests=(python3-pytest python3-hypothesis python3-numpy xvfb xauth libgl1-mesa-dri ffmpeg pkg-config libcgal-dev
     lib3mf-dev)
-packages_ci=(git clang-format clang-tidy cppcheck shellcheck dpkg-dev file)
+packages_ci=(git clang-format clang-tidy cppcheck shellcheck dpkg-dev file pycodestyle pyflakes3 mypy)
 
 die() {
     echo "$*" >&2

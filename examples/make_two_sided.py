@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A part that is milled from both sides, in FreeCAD 0.20 to 1.1:  freecadcmd examples/make_two_sided.py
 
-Two jobs in one document: "Top" faces, pockets and mills the upper half of the outline; the part is turned over; "Bottom"
-cuts what "Top" left. Both are simulated, the second on the result of the first. Writes $SWARF_EXAMPLE_OUT (default:
-examples/out/two_sided.FCStd), beside it result.stl and a few lines on both simulations, and ends FreeCAD, with status 0
-when the part came out as designed. $SWARF_EXAMPLE_VOXEL: voxel size, mm.
+Two jobs in one document: "Top" faces, pockets and mills the upper half of the outline; the part is turned over;
+"Bottom" cuts what "Top" left. Both are simulated, the second on the result of the first. Writes $SWARF_EXAMPLE_OUT
+(default: examples/out/two_sided.FCStd), beside it result.stl and a few lines on both simulations, and ends FreeCAD,
+with status 0 when the part came out as designed. $SWARF_EXAMPLE_VOXEL: voxel size, mm.
 """
 
 import os

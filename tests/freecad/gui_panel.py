@@ -9,7 +9,6 @@ import tempfile
 import threading
 import time
 
-import FreeCAD
 import FreeCADGui as Gui
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -292,7 +291,8 @@ class Watching(PanelTest):
             [item.text for item in german.checking.found]
         screenshot("panel-german-findings.png")
         bar = german.tabs.tabBar()
-        assert bar.tabRect(0).left() >= 0 and bar.tabRect(bar.count() - 1).right() <= german.tabs.width(), "a tab is hidden"
+        assert bar.tabRect(0).left() >= 0, "a tab is hidden"
+        assert bar.tabRect(bar.count() - 1).right() <= german.tabs.width(), "a tab is hidden"
         assert german.width() < 800, "the dock takes too much of a small screen: %d" % german.width()
         german.close()
         wait_for(lambda: german.opening.ended, "the second panel's end")
@@ -323,11 +323,13 @@ class Watching(PanelTest):
         assert numbers.in_words("another") == "another"
         assert [numbers.text(-0.0001, 3, True), numbers.text(1234.5, 1), numbers.short(-0.2, True)] == \
             ["+0,000", "1234,5", "-0,2"]
-        assert [numbers.text(1234567.891, 3), numbers.short(2.5e-7)] == ["1234567,891", "2,5e-07"], "in double precision"
+        in_german = [numbers.text(1234567.891, 3), numbers.short(2.5e-7)]
+        assert in_german == ["1234567,891", "2,5e-07"], "in double precision"
         assert [numbers.count(1234567), numbers.size(4.2e9), numbers.size(1234)] == ["1.234.567", "4,2 GB", "0,00 MB"]
         assert german.accuracy.voxel.text() == "0,2000 mm"
         assert "60,00 cm³" in german.accuracy.outcome.text() and "." not in german.accuracy.estimate.text()
-        assert german.operations.topLevelItem(0).text(3).endswith(" cm³") and "," in german.operations.topLevelItem(0).text(3)
+        volume = german.operations.topLevelItem(0).text(3)
+        assert volume.endswith(" cm³") and "," in volume
 
     def clicking(self, document):
         """From the stock to the line, and from the line to the stock."""
@@ -344,7 +346,8 @@ class Watching(PanelTest):
             shown = panel.findChild(QtWidgets.QLabel, "SwarfPoint-operation").text()
             assert shown == operation, (shown, operation)
             assert panel.findChild(QtWidgets.QLabel, "SwarfPoint-tool").text().startswith(tool)
-            assert max(abs(a - b) for a, b in zip(panel.picking.found.point, point)) < 0.6, (panel.picking.found.point, point)
+            found = panel.picking.found.point
+            assert max(abs(a - b) for a, b in zip(found, point)) < 0.6, (found, point)
             assert abs(panel.picking.found.depth_below_top + point[2]) < 0.1
             assert [obj.Label for obj in Gui.Selection.getSelection()] == [operation]
         line = panel.picking.found.line

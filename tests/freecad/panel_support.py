@@ -139,7 +139,8 @@ class PanelTest:
         def there():
             frame = self.panel.view.frame
             camera = self.panel.view.camera
-            return (not self.panel.view.turning and frame is not None and frame.sharp and (frame.width, frame.height) == self.panel.view.pixels()
+            return (not self.panel.view.turning and frame is not None and frame.sharp
+                    and (frame.width, frame.height) == self.panel.view.pixels()
                     and frame.place == self.panel.transport.wanted
                     and replace(frame.view, camera=None) == replace(self.panel.current_view(), camera=None)
                     and (frame.camera.eye, frame.camera.target, frame.camera.height) ==
@@ -159,7 +160,8 @@ class PanelTest:
     @staticmethod
     def click_row(widget, place_of):
         """Click on a row of a list that is shown; place_of() is its rectangle."""
-        wait_for(lambda: widget.isVisible() and widget.viewport().rect().contains(place_of().center()), "a row in sight")
+        wait_for(lambda: widget.isVisible() and widget.viewport().rect().contains(place_of().center()),
+                 "a row in sight")
         click(widget.viewport(), place_of().center().x(), place_of().center().y())
 
     def opened(self):

@@ -302,8 +302,8 @@ def test_the_set_up_before_is_shown_exactly(swarf):
     from swarf_cam import session as sessions
 
     before, _ = make()
-    operations = [program.Operation("Across", [Command(line) for line in ("G0 X-5 Y15", "G0 Z-1", "G1 X45 F10")], 1, "a",
-                                    [Command("M6 T1"), Command("M3 S1000")])]
+    operations = [program.Operation("Across", [Command(line) for line in ("G0 X-5 Y15", "G0 Z-1", "G1 X45 F10")], 1,
+                                    "a", [Command("M6 T1"), Command("M3 S1000")])]
     data = dataclasses.replace(before, name="Next", moves=program.build(operations), operations=operations,
                                stock={"kind": "result", "job": before})
     watched = sessions.Session(data, 0.5, lambda done: False)
@@ -312,8 +312,8 @@ def test_the_set_up_before_is_shown_exactly(swarf):
     end = float(len(data.moves))
     while watched.step(end, 1.0) != end:
         pass
-    for y, bottom, made in ((5, -2, False), (8 - 1e-3, -2, None), (8 + 1e-3, 0, None), (10, 0, False), (12 - 1e-3, 0, None),
-                            (12 + 1e-3, -1, True)):
+    for y, bottom, made in ((5, -2, False), (8 - 1e-3, -2, None), (8 + 1e-3, 0, None), (10, 0, False),
+                            (12 - 1e-3, 0, None), (12 + 1e-3, -1, True)):
         x, y, _ = camera.project((10, y, bottom), 4 / 3)
         found = watched.pick(view, x, y, end)
         assert found.point[2] == pytest.approx(bottom, abs=1e-6), found

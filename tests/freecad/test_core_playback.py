@@ -427,8 +427,8 @@ class Cancelled(Exception):
 
 
 class FakeSession:
-    """Counts what the engine asks for. refining: set when it begins to draw sharp; endless: which then ends only by being
-    broken off."""
+    """Counts what the engine asks for. refining: set when it begins to draw sharp; endless: which then ends only by
+    being broken off."""
 
     def __init__(self):
         self.at, self.steps, self.broken_off = 0, 0, 0

@@ -8,7 +8,7 @@ import pytest
 import swarf
 from conftest import HI, LO, SLOT_MM3, VOXEL, make_slot
 
-BOX_MM3 = math.prod(h - l for l, h in zip(LO, HI))
+BOX_MM3 = math.prod(high - low for low, high in zip(LO, HI))
 
 
 def test_cutter_of_text():

@@ -109,7 +109,8 @@ def small_disk(size):
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
-@pytest.mark.parametrize("name", ["part.stl", "part.ply", "part.obj", "part.3mf", "part.glb", "part.vdb", "streamed.stl"])
+@pytest.mark.parametrize("name",
+                         ["part.stl", "part.ply", "part.obj", "part.3mf", "part.glb", "part.vdb", "streamed.stl"])
 def test_disk_full(tmp_path, name):
     """The old content is kept, nothing is left beside."""
     stock, path = swarf.Stock.box((0, 0, 0), (20, 20, 20), 0.5), tmp_path / name

@@ -218,7 +218,8 @@ def test_outputs_do_not_replace_what_a_project_or_a_document_reads(tmp_path, mon
                           stock={"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)})
         return swarf.Job("then", first.program, first.tools, stock={"kind": "result", "job": first, "path": "kept.vdb"})
 
-    monkeypatch.setattr(readers, "readers", lambda: {".part": type("Entry", (), {"value": "", "load": lambda self: read})()})
+    monkeypatch.setattr(readers, "readers",
+                        lambda: {".part": type("Entry", (), {"value": "", "load": lambda self: read})()})
     assert main(["simulate", "a.part", "--output", str(tmp_path / "kept.vdb")]) == 2
     assert "kept.vdb: is read, too" in capsys.readouterr().err
     assert files == {path: path.read_bytes() for path in tmp_path.iterdir()}
@@ -247,8 +248,8 @@ def environment(request):
 def test_full_standard_output_is_an_error_like_all_others(launcher, program, tmp_path, environment):
     swarf.Mesh.from_stock(swarf.Stock.box((0, 0, -10), (60, 40, 0), 2.0)).write(tmp_path / "block.stl")
     (tmp_path / "wrong.nc").write_text("G1 X\n")
-    for words in ("--help", "--version", "simulate --help", "moves slot.nc", "mesh block.stl --measure", "check wrong.nc",
-                  f"verify slot.nc --stock {STOCK} --tool {TOOL} --voxel 2 --design block.stl"):
+    for words in ("--help", "--version", "simulate --help", "moves slot.nc", "mesh block.stl --measure",
+                  "check wrong.nc", f"verify slot.nc --stock {STOCK} --tool {TOOL} --voxel 2 --design block.stl"):
         done = subprocess.run(["sh", "-c", f"exec '{launcher}' {words} > /dev/full"], cwd=tmp_path, env=environment,
                               capture_output=True, text=True, timeout=120, check=False)
         error = "swarf: error: standard output: No space left on device"
@@ -265,8 +266,8 @@ def test_a_reader_of_standard_output_that_has_gone_changes_nothing(launcher, pro
         read, write = os.pipe()
         os.close(read)
         try:
-            done = subprocess.run([launcher, *words], cwd=tmp_path, env=environment, stdout=write, stderr=subprocess.PIPE,
-                                  text=True, timeout=120, check=False)
+            done = subprocess.run([launcher, *words], cwd=tmp_path, env=environment, stdout=write,
+                                  stderr=subprocess.PIPE, text=True, timeout=120, check=False)
         finally:
             os.close(write)
         assert (done.returncode, done.stderr) == (status, ""), words
@@ -279,8 +280,8 @@ def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, prog
     (tmp_path / "no.var").write_text("this is no parameter\n")
     (tmp_path / "empty.var").write_text("\n")
     (tmp_path / "deep.json").write_text("[" * 100000)
-    (tmp_path / "open.stl").write_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
-                                       "endloop\nendfacet\nendsolid\n")
+    (tmp_path / "open.stl").write_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                                       "vertex 0 1 0\nendloop\nendfacet\nendsolid\n")
     part = str(tmp_path / "part-1.stl")
     swarf.Mesh.from_stock(swarf.Stock.box((0, 0, -10), (60, 40, 0), 1.0)).write(part)
     size = os.path.getsize(part)

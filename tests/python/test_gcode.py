@@ -146,7 +146,8 @@ def test_impossible_machines(tmp_path, text, says):
 
 def test_rotary_axes_are_refused_by_the_stock():
     stock = swarf.Stock.box((0, 0, -10), (60, 40, 0), 1)
-    program = swarf.Program.parse_gcode("T1 M6 F100\nG0 X-5 Y20 Z-2\nG1 X30\nG0 Z5 A90\nG1 Z-20\nM2\n", start=(-5, 20, 5))
+    program = swarf.Program.parse_gcode("T1 M6 F100\nG0 X-5 Y20 Z-2\nG1 X30\nG0 Z5 A90\nG1 Z-20\nM2\n",
+                                        start=(-5, 20, 5))
     simulation = stock.simulate(program, {1: swarf.Cutter("flat:d=6,l=20")})
     assert [(f.severity, f.line) for f in simulation.findings] == [("error", 4)]
     assert "axis A moves to 90" in simulation.findings[0].text
@@ -222,6 +223,7 @@ def test_the_tools_given_serve_compensation(tmp_path, capsys):
     # the control's own table comes first, where it tells
     assert ends(swarf.read_gcode(path, tools=[(1, 6.0, 0.0)], diameters={1: 8.0})) == ends(table)
     assert ends(swarf.read_gcode(path, tools=[(1, 0.0, 0.0)], diameters={1: 6.0})) == ends(table)
+
     class Pairs(dict):
         def items(self):
             return [7]

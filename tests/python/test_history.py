@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The history by its Python face: positions, cancelling, what is refused, threads. What a position holds is tested in C."""
+"""The history by its Python face: positions, cancelling, what is refused, threads. What a position holds is tested in
+C."""
 import gc
 import random
 import threading
@@ -82,8 +83,9 @@ def test_cancelled_it_stands_between_moves(history):
     assert history.move == 3
 
 
-@pytest.mark.parametrize("place, text", [((52,), "no position 52"), ((51, 0.5), "no position 51"), ((-1,), "no position -1"),
-                                         ((3, 1.5), "part 1.5"), ((3, float("nan")), "0 to 1")])
+@pytest.mark.parametrize("place, text", [
+    ((52,), "no position 52"), ((51, 0.5), "no position 51"), ((-1,), "no position -1"), ((3, 1.5), "part 1.5"),
+    ((3, float("nan")), "0 to 1")])
 def test_places_that_are_not(history, place, text):
     with pytest.raises(ValueError, match=text):
         history.seek(*place)

@@ -66,7 +66,10 @@ def test_a_check_meets_the_holder():
     program.set_section(tool=1, spindle="cw", spindle_rpm=8000)
     program.add_line((-30, 0, -40), kind="rapid", line=1)
     program.add_line((-3, 0, -40), feed_mm_min=400, line=2)
-    stock = lambda: swarf.Stock.box((0, -20, -45), (20, 20, 0), 0.5)
+
+    def stock():
+        return swarf.Stock.box((0, -20, -45), (20, 20, 0), 0.5)
+
     mill = swarf.Cutter("flat:d=6,l=20,sd=6,sl=60")
     assert not stock().check(program, {1: mill}).findings
     long, _ = holders.hold(mill, "ER32", 41)

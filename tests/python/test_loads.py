@@ -166,13 +166,14 @@ def test_a_deviation_is_accepted_as_it_was_looked_at():
     assert dataclasses.replace(done).judge(0.06, accept=[entry]).passed
     (idle,) = [item for item in dataclasses.replace(done, allowance=0.0).judge(0.05, accept=[entry]).findings
                if item.kind == "acceptance"]
-    assert idle.text == ("nothing is found now of what is accepted, with a tolerance of 0.05 mm and an allowance of 0.1 "
-                         "mm, because 'x'")
+    assert idle.text == ("nothing is found now of what is accepted, with a tolerance of 0.05 mm and an allowance of "
+                         "0.1 mm, because 'x'")
 
 
 def test_acceptances_that_cannot_be(tmp_path):
     path = tmp_path / "accept.json"
-    for text, word in (("{}", "list"), ("[", "JSON"), ('[{"kind": "gouge"}]', "reason"), ('[{"reason": " "}]', "reason"),
+    for text, word in (("{}", "list"), ("[", "JSON"), ('[{"kind": "gouge"}]', "reason"),
+                       ('[{"reason": " "}]', "reason"),
                        ('[{"reason": "x"}]', "everything"), ('[{"reason": "x", "what": 1}]', "wanted"),
                        ('[{"reason": "x", "line": "3"}]', "line"), ('[{"reason": "x", "place": [1, 2]}]', "place"),
                        ('[{"reason": "x", "text": ""}]', "text"), ('[{"reason": "x", "place": null}]', "place"),
@@ -223,7 +224,8 @@ def command(tmp_path, *words):
 
 
 def test_command_line(tmp_path):
-    done = command(tmp_path, "--limit", "engagement=80", "--limit", "1:chip=0.001", "--report", str(tmp_path / "r.json"))
+    done = command(tmp_path, "--limit", "engagement=80", "--limit", "1:chip=0.001", "--report",
+                   str(tmp_path / "r.json"))
     assert done.returncode == 1 and "exceeds the limit of 80 deg" in done.stderr and "chip thickness" in done.stderr
     made = json.loads((tmp_path / "r.json").read_text())
     assert made["loads"]["teeth"] == {"1": 2} and made["loads"]["limits"] == {"all": {"engagement": 80.0},

@@ -107,8 +107,8 @@ def test_gltf(mesh, tmp_path, colored):
     data = path.read_bytes()
     magic, version, length, size, kind = struct.unpack_from("<4sIII4s", data)
     assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON") and size % 4 == 0
-    described = json.loads(data[20 : 20 + size])
-    binary = data[28 + size :]
+    described = json.loads(data[20:20 + size])
+    binary = data[28 + size:]
     assert struct.unpack_from("<I4s", data, 20 + size) == (len(binary), b"BIN\0")
     assert described["buffers"][0]["byteLength"] == len(binary)
 
@@ -117,7 +117,7 @@ def test_gltf(mesh, tmp_path, colored):
         view = described["bufferViews"][accessor["bufferView"]]
         count = accessor["count"] * columns
         values = struct.unpack_from(f"<{count}{kind}", binary, view["byteOffset"])
-        return [values[i : i + columns] for i in range(0, count, columns)]
+        return [values[i:i + columns] for i in range(0, count, columns)]
 
     positions, corners = table(0, "f", 3), [c[0] for c in table(1, "I", 1)]
     wanted = mesh.vertices.tolist()
@@ -140,8 +140,8 @@ def test_colors_of_ply_and_obj(mesh, tmp_path):
         assert again.volume == pytest.approx(mesh.volume, rel=1e-9)
     head, body = (tmp_path / "part.ply").read_bytes().split(b"end_header\n", 1)
     assert b"property uchar blue" in head
-    faces = body[12 * mesh.vertex_count :]
-    assert [tuple(faces[16 * i + 13 : 16 * i + 16]) for i in range(mesh.triangle_count)] == colors
+    faces = body[12 * mesh.vertex_count:]
+    assert [tuple(faces[16 * i + 13:16 * i + 16]) for i in range(mesh.triangle_count)] == colors
     first = next(line for line in (tmp_path / "part.obj").read_text().splitlines() if line.startswith("v "))
     assert len(first.split()) == 7
     with pytest.raises(ValueError, match="2 colours for"):
@@ -165,7 +165,8 @@ def test_stream(stock, tmp_path):
     assert made.triangles == part.triangle_count and bands.triangles == in_bands.triangle_count
     assert part.closed and in_bands.closed and in_bands.volume == pytest.approx(part.volume, rel=1e-4)
     stock.write(tmp_path / "stock.vdb")
-    assert main(["mesh", str(tmp_path / "stock.vdb"), "--error", str(ERROR), "--output", str(tmp_path / "told.stl")]) == 0
+    assert main(["mesh", str(tmp_path / "stock.vdb"), "--error", str(ERROR), "--output",
+                 str(tmp_path / "told.stl")]) == 0
     swarf.Mesh.from_stock(swarf.Stock.read(tmp_path / "stock.vdb"), ERROR).write(tmp_path / "whole.stl")
     assert (tmp_path / "told.stl").read_bytes() == (tmp_path / "whole.stl").read_bytes()
     with pytest.raises(ValueError, match="streamed to .stl only"):
@@ -190,7 +191,8 @@ def piped(path, write):
 def test_stream_to_a_pipe(stock, tmp_path):
     """The whole mesh, though there is hardly any memory: a pipe cannot go back to where the count stands."""
     swarf.Mesh.from_stock(stock, ERROR).write(tmp_path / "whole.stl")
-    got, made = piped(tmp_path / "pipe.stl", lambda: swarf.Mesh.stream(stock, tmp_path / "pipe.stl", ERROR, memory_limit=1))
+    got, made = piped(tmp_path / "pipe.stl",
+                      lambda: swarf.Mesh.stream(stock, tmp_path / "pipe.stl", ERROR, memory_limit=1))
     assert got == (tmp_path / "whole.stl").read_bytes() and len(got) == 84 + 50 * made.triangles
 
 

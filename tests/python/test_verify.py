@@ -173,8 +173,8 @@ def test_designs_with_defects(tmp_path):
         swarf.verify(job, swarf.Mesh([(0, 0, 0)], []), voxel=0.5)
     with pytest.raises(ValueError, match="finite"):
         swarf.Mesh([(0, 0, float("nan")), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
-    (tmp_path / "nan.stl").write_text("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\nvertex 1 0 0\nvertex 0 1 0\n"
-                                      "endloop\nendfacet\nendsolid\n")
+    (tmp_path / "nan.stl").write_text("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\nvertex 1 0 0\n"
+                                      "vertex 0 1 0\nendloop\nendfacet\nendsolid\n")
     with pytest.raises((ValueError, swarf.Error)):
         swarf.Mesh.read(str(tmp_path / "nan.stl"))
     # two boxes that cross are the union of both
@@ -211,7 +211,8 @@ def test_checks():
     assert (found.severity, found.kind, found.part, found.line) == ("error", "rapid", "flutes", 77)
     assert 0 < found.t < 1 and math.isclose(found.tip[2], -1, abs_tol=0.06) and "rapid" in found.text
     clamp = swarf.Solid(box((30.0, 10.0, -1.0), (40.0, 20.0, 9.0)))
-    hits = swarf.Stock.box(LO, HI, 0.5).check(job.program, job.tools, fixtures=[clamp], travel=((-4, -50, -50), (90, 90, 90)))
+    hits = swarf.Stock.box(LO, HI, 0.5).check(job.program, job.tools, fixtures=[clamp],
+                                              travel=((-4, -50, -50), (90, 90, 90)))
     assert {"fixture", "travel", "rapid"} == {found.kind for found in hits.findings}
     assert len(swarf.Stock.box(LO, HI, 0.5).check(job.program, job.tools, fixtures=[clamp], stop=True).findings) == 1
     with pytest.raises(TypeError, match="item 0"):
@@ -241,8 +242,8 @@ def test_command(tmp_path):
     gcode.write_text("G21 G90\nT1 M6\nM3 S8000\nG0 X-5 Y0 Z5\n" + "".join(
         f"G0 X-5 Y{y} Z5\nG1 Z-1 F200\nX45 F400\nG0 Z5\n" for y in range(0, 31, 3)) + "M2\n")
     DESIGN.write(str(tmp_path / "part.stl"))
-    words = [sys.executable, "-m", "swarf", "verify", str(gcode), "--design", str(tmp_path / "part.stl"), "--voxel", "0.5",
-             "--stock", "box:0,0,-10,40,30,0", "--tool", "1=flat:d=6,l=20"]
+    words = [sys.executable, "-m", "swarf", "verify", str(gcode), "--design", str(tmp_path / "part.stl"), "--voxel",
+             "0.5", "--stock", "box:0,0,-10,40,30,0", "--tool", "1=flat:d=6,l=20"]
     done = subprocess.run([*words, "--report", str(tmp_path / "r.html")], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert "passed" in done.stdout and (tmp_path / "r.html").read_text().startswith("<!DOCTYPE html>")

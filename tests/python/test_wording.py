@@ -15,13 +15,15 @@ from swarf.verify import check_text, place_text, uncut_text
 
 PLATE = ((0.0, 0.0, -10.0), (60.0, 40.0, 0.0))
 
+
 def wrong():
     """A program that does about all that it must not."""
     program = swarf.Program(start=(5, 5, -1))
     program.add_operation("all wrong")
     for tool, spindle, points in (
             (1, "off", [("rapid", (20, 5, -1)), ("rapid", (22, 5, -1)), ("feed", (20, 5, -8)), ("feed", (30, 5, -8))]),
-            (1, "ccw", [("feed", (30, 5, -25))]), (-1, "cw", [("feed", (31, 5, -25))]), (9, "cw", [("feed", (40, 5, -25))]), (3, "cw", [("feed", (41, 5, 5))]),
+            (1, "ccw", [("feed", (30, 5, -25))]), (-1, "cw", [("feed", (31, 5, -25))]),
+            (9, "cw", [("feed", (40, 5, -25))]), (3, "cw", [("feed", (41, 5, 5))]),
             (2, "cw", [("rapid", (70, 5, 5)), ("rapid", (70, 5, -19)), ("feed", (56, 5, -19)), ("feed", (56, 5, -30)),
                        ("feed", (10, 5, -30))])):
         program.set_section(tool=tool, spindle=spindle, spindle_rpm=100)
@@ -37,7 +39,8 @@ def cube(lo, hi, voxel=1.0):
 def job_of(program):
     part = [(0, 0), (3, 0), (3, 4), (0, 4)]
     tools = {1: swarf.Cutter("flat:d=6,l=6"), 2: swarf.Cutter.from_parts([
-        ("flutes", [(0, 0, 0), (3, 0, 0), (3, 6, 0), (0, 6, 0)]), ("shank", [(0, 6, 0), (4, 6, 0), (4, 20, 0), (0, 20, 0)]),
+        ("flutes", [(0, 0, 0), (3, 0, 0), (3, 6, 0), (0, 6, 0)]),
+        ("shank", [(0, 6, 0), (4, 6, 0), (4, 20, 0), (0, 20, 0)]),
         ("holder", [(0, 20, 0), (9, 20, 0), (9, 40, 0), (0, 40, 0)])]),
         3: swarf.Cutter.from_parts([("shank", [(r, z, 0) for r, z in part])])}
     return Job("job", program, tools)
@@ -67,13 +70,15 @@ def test_moves_without_a_tool_are_not_of_a_tool_minus_one():
     job = job_of(bare)
     job.stock = {"kind": "box", "lo": PLATE[0], "hi": PLATE[1]}
     done = swarf.verify(job, cube(*PLATE), voxel=1.0, loads=False)
-    assert [found.text for found in done.findings if found.kind in ("tool", "uncut")] == ["moves before any tool is loaded"]
+    texts = [found.text for found in done.findings if found.kind in ("tool", "uncut")]
+    assert texts == ["moves before any tool is loaded"]
 
 
 def test_long_names_of_operations_are_cut_between_characters():
-    for name in ("ä" * 60, "x" + "ä" * 60, "xy" + "\u20ac" * 40, "x" * 77 + "\U0001f600", "x" * 80, "x" * 81, "x" * 79 + "ä"):
-        for tool, point, kind in ((-1, (9, 5, 5), "no tool"), (9, (9, 5, 5), "unknown tool"), (3, (9, 5, 5), "no flutes"),
-                                  (1, (9, 5, 50), "idle")):
+    for name in ("ä" * 60, "x" + "ä" * 60, "xy" + "\u20ac" * 40, "x" * 77 + "\U0001f600", "x" * 80, "x" * 81,
+                 "x" * 79 + "ä"):
+        for tool, point, kind in ((-1, (9, 5, 5), "no tool"), (9, (9, 5, 5), "unknown tool"),
+                                  (3, (9, 5, 5), "no flutes"), (1, (9, 5, 50), "idle")):
             program = swarf.Program(start=(5, 5, 50))
             program.set_section(tool=tool, operation=program.add_operation(name))
             program.add_line(point, feed_mm_min=100)
@@ -105,7 +110,8 @@ def test_places_of_designs_are_told_in_the_librarys_own_words():
     scaled = [((0, 0, 0), (60 * factor, 40 * factor, 10 * factor), "unit", first)
               for factor in (25.4, 1 / 25.4, 10.0, 0.1, 1000.0, 0.001)]
     told = set()
-    for lo, hi, key, stock in (((100, 0, -10), (160, 40, 0), "beside", first), ((0, 0, -10), (60, 40, 20), "out", first),
+    for lo, hi, key, stock in (((100, 0, -10), (160, 40, 0), "beside", first),
+                               ((0, 0, -10), (60, 40, 20), "out", first),
                                ((0, 0, -10), (60, 40, 0), "empty", gone), *scaled):
         mesh = cube(lo, hi, max(hi) / 30)
         kind, value, factor, text = swarf.compare_place(stock, swarf.Solid(mesh))
@@ -149,7 +155,8 @@ def test_all_that_is_said_has_a_form():
     sources = pathlib.Path(__file__).parents[2]
     said = [(path.name, *found) for folder in ("bindings/swarf", "freecad_mod/freecad")
             for path in sorted((sources / folder).rglob("*.py")) for found in sentences(path)]
-    assert len(said) > 30 and {name for name, *_ in said} >= {"brep.py", "regions.py", "verify.py", "loose.py", "model.py"}
+    assert len(said) > 30
+    assert {name for name, *_ in said} >= {"brep.py", "regions.py", "verify.py", "loose.py", "model.py"}
     for name, key, values in said:
         assert key in wording.FORMS, (name, key)
         wanted = {field for _, field, _, _ in string.Formatter().parse(wording.FORMS[key]) if field}

@@ -153,8 +153,8 @@ def to_job(data):
 @dataclass
 class Result:
     """What a simulation came to; volumes in mm3. stock_file and mesh_file lie in the folder that was given.
-    excess and gouge are None without a design; findings: arguments of app.wording.line(); colours: (r, g, b), 0 .. 1, of each triangle of the mesh, by
-    operation."""
+    excess and gouge are None without a design; findings: arguments of app.wording.line(); colours: (r, g, b), 0 .. 1,
+    of each triangle of the mesh, by operation."""
 
     stock_file: str
     mesh_file: str
@@ -252,7 +252,8 @@ def _exact(data, stock_file, progress=None):
     return job, left, first.surface(job.program, job.tools, progress=share(0.75, 1))
 
 
-# A solid is made of a mesh with an error of so many voxels: few triangles where it is flat, and edges that wander little.
+# A solid is made of a mesh with an error of so many voxels: few triangles where it is flat, and edges that wander
+# little.
 SOLID_ERROR_VOXELS = 0.02
 
 # Triangles whose faces are told in a minute or so.
@@ -262,8 +263,8 @@ SOLID_TRIANGLES_MAX = 500000
 @dataclass
 class Analytic:
     """A STEP file with faces as they were cut. share: part of the area on planes, cylinders, cones, spheres and tori,
-    None where it was not measured; reason: why there is no file, None when there is; volume_mm3 and area_mm2 of the mesh
-    it was made of, which is within error_mm; faces: their number."""
+    None where it was not measured; reason: why there is no file, None when there is; volume_mm3 and area_mm2 of the
+    mesh it was made of, which is within error_mm; faces: their number."""
 
     share: float
     reason: str = None
@@ -274,8 +275,8 @@ class Analytic:
 
 
 def export_analytic(data, stock_file, path, largest=False, progress=None):
-    """Write what is left of a JobData's stock as a STEP file of analytic faces -> Analytic, without a file where the stock
-    is not bounded by such faces alone. Raises and the rest as export()."""
+    """Write what is left of a JobData's stock as a STEP file of analytic faces -> Analytic, without a file where the
+    stock is not bounded by such faces alone. Raises and the rest as export()."""
     swarf = load()
     brep, step, solids, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))
                                          for name in ("brep", "step", "solids", "parts", "progress"))
@@ -304,9 +305,9 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, toleran
     """Write the mesh of what is left of a JobData's stock, a .vdb file, on the exact surface -> number of triangles.
 
     error_mm: vertices are left out up to this (None: 0.1 voxels); budget: no more triangles, if the error allows;
-    colour: "operation", "deviation" (green within tolerance_mm of the design with allowance_mm left on it) or "thickness";
-    largest: the largest piece alone. progress as simulate(). Any thread.
-    JobError where nothing is left, or no mesh is that small; swarf.Error, OSError.
+    colour: "operation", "deviation" (green within tolerance_mm of the design with allowance_mm left on it) or
+    "thickness"; largest: the largest piece alone. progress as simulate(). Any thread. JobError where nothing is left,
+    or no mesh is that small; swarf.Error, OSError.
     """
     swarf = load()
     colours, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))

@@ -108,7 +108,8 @@ def read_design(path, deflection_mm, progress=None):
         pass  # who cannot read it should not wait for FreeCAD to say so
     if path.lower().endswith(".fcstd"):
         _check_document(path)
-    return to_mesh(_export(path, {"SWARF_EXPORT_DEFLECTION": repr(float(deflection_mm))}, exchange.read_design, progress))
+    return to_mesh(_export(path, {"SWARF_EXPORT_DEFLECTION": repr(float(deflection_mm))}, exchange.read_design,
+                           progress))
 
 
 def read(path, job=None, progress=None):

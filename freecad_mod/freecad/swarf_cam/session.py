@@ -220,7 +220,8 @@ class Session:
                 return None
             self._design_scene = self._swarf.Scene(
                 self._swarf.Stock.from_mesh(self.job.design, self.voxel_mm, progress=progress))
-        look = dict(view.look, colour=TINTED_MATERIAL if tolerance_mm > 0 else DESIGN_COLOUR, colouring="material", **how)
+        look = dict(view.look, colour=TINTED_MATERIAL if tolerance_mm > 0 else DESIGN_COLOUR, colouring="material",
+                    **how)
         picture = self._design_scene.render(
             view.camera, view.width, view.height, buffers=("rgba", "depth", "position", "seen"), progress=progress,
             **{key: value for key, value in look.items() if key in self._keywords})

@@ -105,7 +105,8 @@ class TestDesigns(unittest.TestCase):
     def test_files(self):
         with tempfile.TemporaryDirectory() as folder:
             solid = Part.makeBox(40, 20, 10).cut(Part.makeCylinder(6, 30, FreeCAD.Vector(20, 10, -5)))
-            for suffix, write in ((".step", solid.exportStep), (".brep", solid.exportBrep), (".iges", solid.exportIges)):
+            for suffix, write in ((".step", solid.exportStep), (".brep", solid.exportBrep),
+                                  (".iges", solid.exportIges)):
                 path = os.path.join(folder, "part" + suffix)
                 write(path)
                 if suffix == ".iges":  # holds faces only

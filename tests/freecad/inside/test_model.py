@@ -76,7 +76,12 @@ class TestModel(unittest.TestCase):
     def test_facets_are_made_where_they_are_needed(self):
         """What is analytic has no second mesh, and what was not measured has no share."""
         counts, export, limit = [], native.export, native.SOLID_TRIANGLES_MAX
-        with mock.patch.object(native, "export", lambda *args, **kw: counts.append(export(*args, **kw)) or counts[-1]), \
+
+        def counted(*args, **words):
+            counts.append(export(*args, **words))
+            return counts[-1]
+
+        with mock.patch.object(native, "export", counted), \
                 mock.patch.object(model.FreeCAD, "Console", mock.Mock(wraps=FreeCAD.Console)) as console:
             model.export(self.obj, self.path("part.step"))
             self.assertEqual(counts, [])
@@ -90,8 +95,8 @@ class TestModel(unittest.TestCase):
                 model.export(self.obj, self.path("doubt.step"))
             self.assertEqual(counts, 2 * [self.obj.Mesh.CountFacets])
             told = [call.args[0] for call in console.PrintWarning.call_args_list]
-        self.assertEqual(told, ["Swarf: the shape is made of flat facets: its mesh has 28 triangles, and faces are told of 4 at"
-                                " most\n", "Swarf: the shape is made of flat facets: in doubt\n"])
+        self.assertEqual(told, ["Swarf: the shape is made of flat facets: its mesh has 28 triangles, and faces are "
+                                "told of 4 at most\n", "Swarf: the shape is made of flat facets: in doubt\n"])
 
     def test_what_freecad_doubts_is_not_taken(self):
         made = native.Analytic(1.0, None, 8.0, 24.0, 0.01, 6)
@@ -102,7 +107,8 @@ class TestModel(unittest.TestCase):
     def test_analytic_faces(self):
         """A profile with round corners, a pocket, a slot with round ends, a drilled hole: faces as they were cut."""
         cone = 2.5 / math.tan(math.radians(59))
-        drill = Part.makeCone(0, 2.5, cone).fuse(Part.makeCylinder(2.5, 30, FreeCAD.Vector(0, 0, cone))).removeSplitter()
+        shank = Part.makeCylinder(2.5, 30, FreeCAD.Vector(0, 0, cone))
+        drill = Part.makeCone(0, 2.5, cone).fuse(shank).removeSplitter()
         tools = [samples.add_controller(self.document, 1, samples.end_mill(10), CuttingEdgeHeight=20.0),
                  samples.add_controller(self.document, 2, samples.end_mill(6), CuttingEdgeHeight=20.0),
                  samples.add_controller(self.document, 3, drill, CuttingEdgeHeight=20.0)]
@@ -249,7 +255,8 @@ class TestModel(unittest.TestCase):
         # FreeCAD 1.0 puts layers beside the lines
         read = Part.makeCompound([obj.Shape for obj in other.Objects if hasattr(obj, "Shape")])
         self.assertAlmostEqual(sum(edge.Length for edge in read.Edges), 4 * 40 + 4 * 7, delta=0.01)
-        self.assertEqual([round(getattr(read.BoundBox, name), 3) for name in ("XMin", "XMax", "YMin", "YMax")], [0, 40, 0, 20])
+        self.assertEqual([round(getattr(read.BoundBox, name), 3) for name in ("XMin", "XMax", "YMin", "YMax")],
+                         [0, 40, 0, 20])
 
     def test_estimates(self):
         for suffix in (".stl", ".ply", ".glb"):

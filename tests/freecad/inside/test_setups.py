@@ -61,7 +61,8 @@ class TestSetUps(unittest.TestCase):
         self.assertIsNone(setups.placement_by_models(self.top, self.bottom))
         clones = []
         for job in (self.top, self.bottom):
-            clone = samples.feature(self.document, "Part::Feature", "Clone", Objects=("App::PropertyLinkList", [self.part]))
+            clone = samples.feature(self.document, "Part::Feature", "Clone",
+                                    Objects=("App::PropertyLinkList", [self.part]))
             clone.Shape = self.part.Shape
             job.Model.Group = [clone]
             clones.append(clone)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs in freecadcmd for the command line: document, or a CAD file -> exchange folder. Arguments come in the environment, because
-FreeCAD refuses options that it does not know."""
+"""Runs in freecadcmd for the command line: document, or a CAD file -> exchange folder. Arguments come in the
+environment, because FreeCAD refuses options that it does not know."""
 
 import os
 import sys

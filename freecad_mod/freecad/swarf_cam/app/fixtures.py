@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Fixtures of a job - a vice, clamps, the table: solids and meshes of the document that the job names in a property
-which the add-on adds to it. The links say nothing of the order of a recompute, so that a fixture may depend on the job."""
+which the add-on adds to it. The links say nothing of the order of a recompute, so that a fixture may depend on the
+job."""
 
 import array
 

@@ -104,7 +104,8 @@ class Export:
         return 0 if self.analytic.reason is None else self._run_facets(half[1])
 
     def _run_facets(self, progress=None):
-        """The mesh that a shape is made of; JobError where that is too large, told before it is made where it is known."""
+        """The mesh that a shape is made of; JobError where that is too large, told before it is made where it is
+        known."""
         if not self.options.get("largest") and not self.options.get("budget"):
             _check_count(self._least)
         count = native.export(self.data, self.stock_file, self._file("stock.stl"), progress=progress, **self.options)
@@ -144,16 +145,19 @@ class Export:
             self.analytic.reason = _doubt(shape, self.analytic)
             if self.analytic.reason is None:
                 FreeCAD.Console.PrintMessage(translate(
-                    "Swarf", "Swarf: the shape has {0} faces as they were cut: planes, cylinders, cones, spheres, tori\n"
+                    "Swarf",
+                    "Swarf: the shape has {0} faces as they were cut: planes, cylinders, cones, spheres, tori\n"
                 ).format(self.analytic.faces))
                 return shape
             self._run_facets()  # a rare one, and known only here
         share, reason = self.analytic.share, wording.say(self.analytic.reason)
         if share is None or share >= 1:
-            FreeCAD.Console.PrintWarning(translate("Swarf", "Swarf: the shape is made of flat facets: {0}\n").format(reason))
+            text = translate("Swarf", "Swarf: the shape is made of flat facets: {0}\n")
+            FreeCAD.Console.PrintWarning(text.format(reason))
         else:
             FreeCAD.Console.PrintWarning(translate(
-                "Swarf", "Swarf: the shape is made of flat facets; {0:.1f} % of its surface is planes, cylinders, cones, spheres"
+                "Swarf",
+                "Swarf: the shape is made of flat facets; {0:.1f} % of its surface is planes, cylinders, cones, spheres"
                 " and tori. Not all of it: {1}\n").format(math.floor(1000 * share) / 10, reason))
         return shape_of(Mesh.Mesh(self._file("stock.stl")))
 
@@ -181,8 +185,8 @@ def export_steps(obj, path, **options):
 
 def export(obj, path, progress=None, **options):
     """Write what is left of the stock into a file by its suffix -> number of triangles. options: error_mm, budget,
-    colour ("operation", "deviation" or "thickness"), tolerance_mm and allowance_mm (of the deviation's colours), largest
-    (the largest piece alone)."""
+    colour ("operation", "deviation" or "thickness"), tolerance_mm and allowance_mm (of the deviation's colours),
+    largest (the largest piece alone)."""
     made = steps.run(export_steps(obj, path, **options))
     count = made.run(progress)
     made.finish()
@@ -222,9 +226,9 @@ def shape_of(mesh):
 
 
 def add_shape(obj):
-    """A Part object with what is left of the stock of a simulation as a solid, in one undoable step -> it: what Path can
-    take as the stock of a job. Its faces are as they were cut where that can be, and the job is as it was. JobError as
-    shape_of()."""
+    """A Part object with what is left of the stock of a simulation as a solid, in one undoable step -> it: what Path
+    can take as the stock of a job. Its faces are as they were cut where that can be, and the job is as it was. JobError
+    as shape_of()."""
     return _add(obj, _made_shape(obj) or shape_of(obj.Mesh), "Shape", "Stock", translate("Swarf", "Stock"))
 
 

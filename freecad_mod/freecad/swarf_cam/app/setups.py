@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Set-ups in a row: a job whose stock is what the simulation of another job left, turned and moved. Kept with the job as
-properties that the add-on adds to it, so that all who simulate it know."""
+"""Set-ups in a row: a job whose stock is what the simulation of another job left, turned and moved. Kept with the job
+as properties that the add-on adds to it, so that all who simulate it know."""
 
 import os
 
@@ -40,8 +40,8 @@ def chain_of(job):
 
 
 def add_properties(job):
-    """Give a job the properties, in no transaction; one that is open is committed. An undo that took away a link that is
-    set would leave the job among the users of what it linked, in every FreeCAD so far, and FreeCAD would die of that
+    """Give a job the properties, in no transaction; one that is open is committed. An undo that took away a link that
+    is set would leave the job among the users of what it linked, in every FreeCAD so far, and FreeCAD would die of that
     once the job is gone. Locked for the same reason."""
     FreeCAD.closeActiveTransaction()
     for kind, name, text in (

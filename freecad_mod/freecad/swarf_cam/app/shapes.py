@@ -45,8 +45,8 @@ def as_mesh(found, deflection_mm=DEFLECTION_MM):
 
 
 def read_design(path, deflection_mm):
-    """The solids of a CAD file or a FreeCAD document as one mesh: of a document with one job its model, else every solid
-    that no other object is made from. JobError where there is none."""
+    """The solids of a CAD file or a FreeCAD document as one mesh: of a document with one job its model, else every
+    solid that no other object is made from. JobError where there is none."""
     if not path.lower().endswith(".fcstd"):
         shape = Part.Shape()
         shape.read(path)

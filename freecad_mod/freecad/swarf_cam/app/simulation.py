@@ -161,8 +161,8 @@ def make(job, voxel_mm=None):
 
 
 def default_voxel(job):
-    """Voxel size that a job is simulated with where nobody says, mm: that of the set-up before, whose voxels can be kept
-    as they are. JobError when there is no stock."""
+    """Voxel size that a job is simulated with where nobody says, mm: that of the set-up before, whose voxels can be
+    kept as they are. JobError when there is no stock."""
     previous = setups.previous_of(job)
     if previous is not None and previous.VoxelSize.Value > 0:
         return previous.VoxelSize.Value

@@ -15,8 +15,8 @@ SEVERITIES = {"error": QT_TRANSLATE_NOOP("Swarf", "error"), "warning": QT_TRANSL
 
 
 def say(text, point="."):
-    """A text in the user's language, where it is a swarf.wording.Said; else as it is. point: that of decimals. Units are
-    written as everywhere in the add-on; names of the user's in the values stay as they are."""
+    """A text in the user's language, where it is a swarf.wording.Said; else as it is. point: that of decimals. Units
+    are written as everywhere in the add-on; names of the user's in the values stay as they are."""
     translated = getattr(text, "translated", None)
     return text if translated is None else translated(_form, point)
 

@@ -279,7 +279,8 @@ def parts(nodes, shape_type="", parameters=None):
 
     shape_type: FreeCAD's name of the shape in any spelling ("v_bit", "VBit", "slittingsaw"). parameters: name -> mm
     or degrees. Everything cuts below CuttingEdgeHeight, the shank begins above; a V-bit's is measured from the top of
-    its cone, and so is a tap's CuttingEdgeLength. A slitting saw cuts with its blade only. A probe cuts nothing. Without that parameter all of it cuts.
+    its cone, and so is a tap's CuttingEdgeLength. A slitting saw cuts with its blade only. A probe cuts nothing.
+    Without that parameter all of it cuts.
     """
     parameters = parameters or {}
     kind = shape_type.lower().replace("_", "").replace("-", "").replace(" ", "")

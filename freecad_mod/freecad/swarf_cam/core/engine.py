@@ -42,8 +42,8 @@ class Engine:
     progress(fraction), failed(error) and finished(), which comes last.
 
     A session has at, the place it stands at, step(place, seconds, progress) -> at, and draw(view, place, budget_ms,
-    progress, rays) -> frame, budget_ms None for all the time it takes. Both raise cancelled_type when a progress answered
-    true. What is called may leave it anywhere: it goes on from there to the place that is wished.
+    progress, rays) -> frame, budget_ms None for all the time it takes. Both raise cancelled_type when a progress
+    answered true. What is called may leave it anywhere: it goes on from there to the place that is wished.
     """
 
     def __init__(self, open_session, listener, cancelled_type):

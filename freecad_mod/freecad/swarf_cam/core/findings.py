@@ -3,7 +3,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Optional
 
 # The worst first.
 SEVERITIES = ("error", "warning", "note")
@@ -25,12 +25,12 @@ class Finding:
     severity: str
     text: str
     kind: str = ""
-    place: float = None
+    place: Optional[float] = None
     line: int = -1
     operation: int = -1
-    point: tuple = None
+    point: Optional[tuple] = None
     amount: float = 0.0
-    accepted: str = None
+    accepted: Optional[str] = None
     verdict: Any = field(default=None, compare=False, repr=False)
 
 

@@ -51,8 +51,8 @@ class Live:
         """Texts and icon."""
         return {"Pixmap": os.path.join(ICONS, "swarf-live.svg"),
                 "MenuText": QT_TRANSLATE_NOOP("Swarf_Live", "Watch milling"),
-                "ToolTip": QT_TRANSLATE_NOOP("Swarf_Live", "Watch the stock of the job being cut, step by step, forward "
-                                                           "and back")}
+                "ToolTip": QT_TRANSLATE_NOOP(
+                    "Swarf_Live", "Watch the stock of the job being cut, step by step, forward and back")}
 
     def IsActive(self):
         """Whenever there is a job to watch and something to do it with."""
@@ -123,8 +123,9 @@ class Export:
         """Texts and icon."""
         return {"Pixmap": os.path.join(ICONS, "swarf-export.svg"),
                 "MenuText": QT_TRANSLATE_NOOP("Swarf_Export", "Export stock"),
-                "ToolTip": QT_TRANSLATE_NOOP("Swarf_Export", "Write what is left of the stock as a mesh with sharp edges, "
-                                                             "a shape or a level set")}
+                "ToolTip": QT_TRANSLATE_NOOP(
+                    "Swarf_Export",
+                    "Write what is left of the stock as a mesh with sharp edges, a shape or a level set")}
 
     def IsActive(self):
         """Whenever a simulation with a result is chosen."""

@@ -51,7 +51,8 @@ class ExportPanel(TaskPanel):
         self.allowance.setRange(0, settings.ALLOWANCE_MAX_MM)
         self.allowance.setSingleStep(0.05)
         self.allowance.setSuffix(" mm")
-        self.allowance.setToolTip(translate("Swarf", "What is meant to be left on the model: it counts as no deviation"))
+        self.allowance.setToolTip(
+            translate("Swarf", "What is meant to be left on the model: it counts as no deviation"))
         self.allowance.setValue(settings.allowance())
         layout.addRow(translate("Swarf", "Allowance"), self.allowance)
         self.largest = QtWidgets.QCheckBox(translate("Swarf", "leave loose pieces out"))
@@ -82,8 +83,8 @@ class ExportPanel(TaskPanel):
         else:
             text = numbers.size(size)
         if self.suffix in model.SHAPE_SUFFIXES and triangles > model.SHAPE_TRIANGLES_MAX:
-            text += translate(
-                "Swarf", "; too many for flat facets: a shape only if all its faces are planes, cylinders, cones, spheres and tori")
+            text += translate("Swarf", "; too many for flat facets: a shape only if all its faces are planes, "
+                              "cylinders, cones, spheres and tori")
         self.estimate.setText(text)
 
     @property

@@ -35,8 +35,8 @@ def describe_estimate(job, voxel_mm):
 
 
 class StockChoice:
-    """What the job cuts, its own stock or what another job leaves, and how that lies. The document learns of it when the
-    work starts."""
+    """What the job cuts, its own stock or what another job leaves, and how that lies. The document learns of it when
+    the work starts."""
 
     AS_MODEL, UNCHANGED, KEEP = "model", "unchanged", "keep"
 

@@ -11,8 +11,8 @@ translate = FreeCAD.Qt.translate
 
 
 class TaskPanel:
-    """form: what is shown. reading: the Slices that read the document, worker: the Worker of the thread; None when there
-    is none. bar and message: the last rows, from add_progress(). begin() and end() are the panel's own."""
+    """form: what is shown. reading: the Slices that read the document, worker: the Worker of the thread; None when
+    there is none. bar and message: the last rows, from add_progress(). begin() and end() are the panel's own."""
 
     def __init__(self, name, title):
         self.reading = self.worker = None

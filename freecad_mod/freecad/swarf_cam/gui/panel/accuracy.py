@@ -55,8 +55,9 @@ class Accuracy(QtWidgets.QWidget):
         """What opening took at the size in use, and what came out."""
         self._measured = session.voxel_mm, seconds
         overview = session.overview
-        lines = [translate("Swarf", "Stock {0} cm³, removed {1} cm³, left {2} cm³").format(*(numbers.text(volume / 1000, 2) for volume in (
-            overview.volume_initial, overview.volume_initial - overview.volume_final, overview.volume_final)))]
+        volumes = overview.volume_initial, overview.volume_initial - overview.volume_final, overview.volume_final
+        lines = [translate("Swarf", "Stock {0} cm³, removed {1} cm³, left {2} cm³").format(
+            *(numbers.text(volume / 1000, 2) for volume in volumes))]
         lines += ["%s: %s" % (translate("Swarf", wording.SEVERITIES[severity]), numbers.in_words(text))
                   for _, severity, text in overview.findings]
         lines += list(session.data.notes)

@@ -65,8 +65,8 @@ class Banner(QtWidgets.QFrame):
 
     def say(self, kind, text, action=None, act=None):
         """A message of kind "error", "warning" or "note"; action: text of a button that calls act."""
-        self.setStyleSheet("#SwarfBanner { border-radius: 5px; %s } #SwarfMessage { %s } #SwarfBanner QToolButton { %s }"
-                           % ((STYLES[kind],) * 3))
+        self.setStyleSheet("#SwarfBanner { border-radius: 5px; %s } #SwarfMessage { %s } "
+                           "#SwarfBanner QToolButton { %s }" % ((STYLES[kind],) * 3))
         self.text.setText(text)
         self.bar.hide()
         self.close_button.show()

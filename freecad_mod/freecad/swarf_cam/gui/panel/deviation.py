@@ -117,8 +117,8 @@ def volume_text(volume, allowance_mm):
 
 
 class DeviationPage(QtWidgets.QWidget):
-    """Histogram and numbers of a checks.Outcome, and the allowance that they are over. Tells by allowed another one, which
-    is kept in the settings."""
+    """Histogram and numbers of a checks.Outcome, and the allowance that they are over. Tells by allowed another one,
+    which is kept in the settings."""
 
     allowed = QtCore.Signal()
 
@@ -141,7 +141,8 @@ class DeviationPage(QtWidgets.QWidget):
             self._values[name] = value
         self.allowance = QtWidgets.QDoubleSpinBox()
         self.allowance.setObjectName("SwarfAllowance")
-        self.allowance.setToolTip(translate("Swarf", "What is meant to be left on the model: it counts as no deviation"))
+        self.allowance.setToolTip(
+            translate("Swarf", "What is meant to be left on the model: it counts as no deviation"))
         self.allowance.setDecimals(3)
         self.allowance.setRange(0.0, settings.ALLOWANCE_MAX_MM)
         self.allowance.setSingleStep(0.05)

@@ -19,6 +19,7 @@ from .watch import JobWatch
 
 translate = FreeCAD.Qt.translate
 
+
 class Opening:
     """One job at a time. session: what is open, None for none."""
 
@@ -48,7 +49,8 @@ class Opening:
 
     @property
     def known_hashes(self):
-        """Hashes of the job's paths that have not changed since it was read, None when the job did change, or may have."""
+        """Hashes of the job's paths that have not changed since it was read, None when the job did change, or may
+        have."""
         watch = self._watch
         return None if watch is None or watch.differs or watch.comparing else watch.known
 

@@ -21,8 +21,8 @@ class SetupPage(QtWidgets.QWidget):
     FreeCAD are to be fixtures, by removed the name of one that is none any more, by cleared another clearance, which is
     kept in the settings.
 
-    _told: name of a tool controller -> [holder, stickout] as it was shown or told last; _usual: -> stickout to begin with;
-    _filling: the page is being filled, so that what its editors say on going is nothing that the user wants."""
+    _told: name of a tool controller -> [holder, stickout] as it was shown or told last; _usual: -> stickout to begin
+    with; _filling: the page is being filled, so that what its editors say on going is nothing that the user wants."""
 
     held = QtCore.Signal(str, str, float)
     add_pressed = QtCore.Signal()

@@ -11,7 +11,8 @@ QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 # Scene.render's names and what they are called here.
 COLOURINGS = (("material", QT_TRANSLATE_NOOP("Swarf", "Material")),
-              ("operation", QT_TRANSLATE_NOOP("Swarf", "By operation")), ("tool", QT_TRANSLATE_NOOP("Swarf", "By tool")),
+              ("operation", QT_TRANSLATE_NOOP("Swarf", "By operation")),
+              ("tool", QT_TRANSLATE_NOOP("Swarf", "By tool")),
               ("age", QT_TRANSLATE_NOOP("Swarf", "By age")), ("feed", QT_TRANSLATE_NOOP("Swarf", "By feed")),
               ("deviation", QT_TRANSLATE_NOOP("Swarf", "Deviation")))
 DEVIATION = "deviation"
