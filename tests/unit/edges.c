@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Lines of a picture: the outline of a rounding, whose face turns away from the eye without an edge; steps that crowd,
  * whose lines are lighter than that of one alone; and one ray per pixel against nine. A fine groove has none on any
- * row. */
+ * row. What is drawn in strips looks as what is drawn at once. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -144,10 +144,53 @@ static void check_rows(void)
     swarf_stock_destroy(stock);
 }
 
+/** Scallops finer than their pixels, over all of a block or so much of it, from its upper side, that their samples fit
+ *  into memory; the upper half of its picture from above. */
+static void draw_scallops(double lowest, uint8_t *rgba)
+{
+    enum { SIDE = 512 };
+    const swarf_box block = {{0, 0, 0}, {16, 16, 1}};
+    const swarf_camera camera = {.eye = {8, 8, 100}, .target = {8, 8, 0}, .up = {0, 1, 0}, .height_mm = 16};
+    swarf_stock_options stock_options = swarf_stock_options_default();
+    swarf_picture_options options = swarf_picture_options_default();
+    swarf_stock *stock = NULL;
+    swarf_scene *scene = NULL;
+    swarf_cutter *cutter = NULL;
+    static uint8_t whole[4 * SIDE * SIDE];
+    stock_options.voxel_mm = 0.05;
+    CHECK_OK(swarf_stock_create_box(&block, &stock_options, &stock));
+    CHECK_OK(swarf_cutter_parse("ball:d=0.5,l=2", &cutter));
+    for (int i = 0; i < 40; i++) {
+        const double y = 15.8 - 0.4 * i;
+        const swarf_path path = {.start = {1, y, 0.8}, .end = {15, y, 0.8}, .has_motion = 1};
+        if (y > lowest) CHECK_OK(swarf_stock_cut(stock, cutter, &path, 1, NULL));
+    }
+    swarf_cutter_release(cutter);
+    CHECK_OK(swarf_scene_create(stock, &scene));
+    options.width = options.height = SIDE;
+    options.occlusion = 0;
+    options.samples = 4;
+    CHECK_OK(swarf_scene_picture(scene, &camera, &options, NULL, whole));
+    memcpy(rgba, whole, sizeof whole / 2);
+    swarf_scene_destroy(scene);
+    swarf_stock_destroy(stock);
+}
+
+/** The samples of a picture that need more memory than is spent on them are made strip by strip: its pixels are those
+ * of one whose samples fit, where both show the same. */
+static void check_strips(void)
+{
+    static uint8_t strips[2 * 512 * 512], once[2 * 512 * 512];
+    draw_scallops(0, strips);
+    draw_scallops(4, once);
+    CHECK(memcmp(strips, once, sizeof once) == 0);
+}
+
 int main(void)
 {
     check_outline();
     check_crowd();
     check_rows();
+    check_strips();
     return test_end();
 }
