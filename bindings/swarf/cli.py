@@ -26,10 +26,13 @@ def make_parser(commands: dict[str, ModuleType]) -> Parser:
     return parser
 
 
-def interrupt_on_sigterm() -> None:
-    """Let SIGTERM end the work as Ctrl-C does: by its default it would leave half-written files behind."""
-    if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
+def interrupt_by_signals() -> None:
+    """Let SIGTERM and Ctrl-C end the work in order: by their defaults they would leave half-written files behind."""
+    if threading.current_thread() is not threading.main_thread():
+        return
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def open_streams() -> None:
@@ -49,10 +52,10 @@ def of_system(error: OSError) -> str:
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the command with these words (default: of the process); returns the exit status."""
     open_streams()
-    commands = collect()
     try:
+        commands = collect()
         arguments = make_parser(commands).parse_args(argv)
-        interrupt_on_sigterm()
+        interrupt_by_signals()
         return int(commands[arguments.command].run(arguments))
     except OSError as error:
         message = one_line(of_system(error))

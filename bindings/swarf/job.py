@@ -44,6 +44,12 @@ class Job:
     files: list[str] = field(default_factory=list)  #: that it was read from besides the one that was asked for
 
 
+def number_of(job: Job, tool: int) -> int:
+    """The number by which a tool was given. Moves that name none have -1, and may have another's cutter."""
+    cutter = job.tools.get(tool) if tool < 0 else None
+    return next((number for number, other in job.tools.items() if number >= 0 and other is cutter), tool)
+
+
 def operation_of(job: Job, move: int) -> tuple[Optional[str], int]:
     """Name of the operation (None: none) and line of a move."""
     *_, line, _, section_kind = MOVE.unpack_from(job.program.moves, move * MOVE.size)

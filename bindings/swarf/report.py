@@ -7,9 +7,9 @@ from typing import Any, Optional
 
 from . import _native, loads, parts, timing
 from .files import write_text
-from .job import Job, operation_of
+from .job import Job, number_of, operation_of
 from .simulate import Result
-from .verify import Verification
+from .verify import Verification, uncut_text
 
 
 def _unique(names: tuple[str, ...]) -> list[str]:
@@ -26,15 +26,15 @@ def _unique(names: tuple[str, ...]) -> list[str]:
     return result
 
 
-def _findings(names: list[str], simulation: _native.Simulation) -> list[dict[str, Any]]:
+def _findings(job: Job, names: list[str], simulation: _native.Simulation) -> list[dict[str, Any]]:
     return [
         {
             "severity": finding.severity,
             "operation": names[finding.operation] if 0 <= finding.operation < len(names) else None,
             "move": finding.move,
             "line": finding.line,
-            "tool": finding.tool,
-            "text": finding.text,
+            "tool": number_of(job, finding.tool),
+            "text": uncut_text(finding, job),
         }
         for finding in simulation.findings
     ]
@@ -48,7 +48,7 @@ def _set_up(job: Job, simulation: _native.Simulation) -> dict[str, Any]:
         "moves": len(job.program),
         "volume_mm3": {"initial": simulation.volume_initial, "final": simulation.volume_final},
         "removed_mm3_by_operation": dict(zip(names, simulation.removed_by_operation)),
-        "findings": _findings(names, simulation),
+        "findings": _findings(job, names, simulation),
     }
 
 
@@ -74,7 +74,8 @@ def make(
         "isa": _native.isa(),
         "moves": len(job.program),
         "machine_seconds": times["total"],
-        "machine_seconds_by_tool": {str(tool): seconds for tool, seconds in sorted(times["by_tool"].items())},
+        "machine_seconds_by_tool": {
+            str(number_of(job, tool)): seconds for tool, seconds in sorted(times["by_tool"].items())},
         "machine_seconds_by_operation": dict(zip(names, times["by_operation"])),
         "operations": names,
         "tools": [
@@ -85,7 +86,7 @@ def make(
                 "flutes_mm": list(cutter.extent()),
                 "holder": job.holders.get(number, "own shape" if cutter.radius("holder") > 0 else None),
             }
-            for number, cutter in sorted(job.tools.items())
+            for number, cutter in sorted(job.tools.items()) if number_of(job, number) == number
         ],
         "seconds": {stage: round(value, 6) for stage, value in seconds.items()},
         "volume_mm3": {
@@ -100,7 +101,7 @@ def make(
         "mesh": _mesh(result),
         "solids": [{"file": solid.path, "faces": solid.faces, "facets_because": solid.reason}
                    for solid in result.solids],
-        "findings": _findings(names, simulation),
+        "findings": _findings(job, names, simulation),
         "notes": list(job.notes),
         "loose_pieces": [
             {

@@ -13,7 +13,7 @@ from ._native import (Check, CheckFinding, Cluster, Deviation, Finding, Geometry
                       Stock, compare_overlap, compare_place, measure_deviation)
 from .accept import Acceptance
 from .aliases import Box, Severity
-from .job import Job, operation_of
+from .job import Job, number_of, operation_of
 from .loads import Limits
 from .records import MOVE
 from .progress import Report, Stages, share
@@ -246,7 +246,7 @@ def check_text(found: CheckFinding, job: Job, clearance: float) -> str:
     key = keys.get(found.kind, found.kind)
     if key not in FORMS:  # of what is not asked for here: travel, plunges
         return found.text
-    return Said(key, depth=found.depth, clearance=clearance, tool=found.tool)
+    return Said(key, depth=found.depth, clearance=clearance, tool=number_of(job, found.tool))
 
 
 def uncut_text(found: Finding, job: Job) -> Said:
@@ -254,7 +254,7 @@ def uncut_text(found: Finding, job: Job) -> Said:
     names = job.program.operations
     name = names[found.operation] if 0 <= found.operation < len(names) else ""
     return Said(f"uncut {found.kind}", operation=shortened(name),
-                tool=found.tool, axis=found.axis, value=found.value)
+                tool=number_of(job, found.tool), axis=found.axis, value=found.value)
 
 
 def _check_findings(job: Job, checked: Check, voxel: float, clearance: float) -> list[Verdict]:

@@ -346,6 +346,21 @@ def test_signals_end_it_like_an_error(launcher, tmp_path, number):
     assert [path.name for path in tmp_path.iterdir()] == ["job.nc"]
 
 
+def test_ctrl_c_before_it_has_begun_ends_it_quietly(launcher, tmp_path):
+    """A module that it imports waits, to be met there."""
+    (tmp_path / "argparse.py").write_text("import time\nprint('importing', flush=True)\ntime.sleep(60)\n")
+    for ignored in (False, True):
+        with subprocess.Popen([launcher, "--version"], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)},
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                              preexec_fn=lambda: ignored and signal.signal(signal.SIGINT, signal.SIG_IGN)) as running:
+            assert running.stdout.readline() == "importing\n"
+            running.send_signal(signal.SIGINT)
+            if ignored:
+                running.terminate()
+            _, err = running.communicate(timeout=120)
+        assert (running.returncode, err) == (-signal.SIGTERM if ignored else -signal.SIGINT, "")
+
+
 def test_a_report_that_cannot_be_written_is_named(tmp_path):
     from swarf import report
 
@@ -382,3 +397,20 @@ def test_findings_of_class_error_give_status_1(monkeypatch, program, tmp_path, c
     assert made["findings"][0]["severity"] == "error"
     assert set(made["comparison"]) == {"design_mm3", "stock_mm3", "excess_mm3", "gouge_mm3"}
     assert "swarf: error: line" in capsys.readouterr().err
+
+
+def test_a_tool_that_the_program_does_not_name_has_its_own_number(tmp_path, capsys):
+    program, report = tmp_path / "bare.nc", tmp_path / "report.json"
+    program.write_text("G21 G90 F300\nG0 X10 Y20 Z5\nG1 Z-2\nX40\nG0 Z5\nM2\n")
+    words = [str(program), "--stock", STOCK, "--tool", "3=flat:d=6,l=20", "--voxel", "1"]
+    assert main(["simulate", *words, "--report", str(report)]) == 0
+    assert "the program names no tool: tool 3 is used" in capsys.readouterr().err
+    made = json.loads(report.read_text())
+    assert [tool["number"] for tool in made["tools"]] == [3] and list(made["machine_seconds_by_tool"]) == ["3"]
+    # one that cannot cut is called by that number, too
+    pin = swarf.Cutter.from_parts([("shank", [(0, 0, 0), (3, 0, 0), (3, 20, 0), (0, 20, 0)])])
+    job = swarf.Job("bare", swarf.Program.read_gcode(program), {3: pin, -1: pin},
+                    stock={"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)})
+    block = swarf.Mesh.from_stock(swarf.Stock.box((0, 0, -10), (60, 40, 0), 1.0))
+    texts = [finding.text for finding in swarf.verify(job, block, voxel=1.0).findings]
+    assert "tool T3 has no flutes" in texts

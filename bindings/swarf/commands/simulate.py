@@ -12,6 +12,7 @@ from .. import colours, inputs, report, timing
 from ..console import DONE, FINDINGS, check_outputs, check_suffix, one_line, say
 from ..progress import Bar
 from ..simulate import output_suffix, simulate
+from ..verify import uncut_text
 
 
 def add(subparsers: Any) -> None:
@@ -89,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     found = []
     for played, simulation in (*result.before, (job, result.simulation)):
         of = f"{played.name}: " if result.before else ""
-        found += [f"{finding.severity}: {of}line {finding.line}: {one_line(finding.text)}"
+        found += [f"{finding.severity}: {of}line {finding.line}: {one_line(uncut_text(finding, played))}"
                   for finding in simulation.findings]
     inputs.print_findings(found + told)
     if sys.stdout.isatty():
