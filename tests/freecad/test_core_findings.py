@@ -115,6 +115,21 @@ def test_progress_does_not_run_backwards_where_there_are_fixtures(swarf, monkeyp
         assert told == sorted(told) and told[-1] <= 1.0
 
 
+def test_reading_fixtures_tells_its_progress_and_can_be_broken_off(swarf):
+    """Those of a set-up before are in the first half."""
+    stock = swarf.Mesh.from_stock(swarf.Stock.cylinder((0, 0, 20), (0, 0, 20), 20, 0.5))
+    round_one = array.array("f", bytes(stock.vertices)), array.array("I", bytes(stock.triangles))
+    before, _ = make()
+    before.fixtures = [("Round", round_one)]
+    data = dataclasses.replace(before, stock={"kind": "result", "job": before}, fixtures=2 * before.fixtures)
+    told = []
+    assert len(native.to_job(data, told.append).fixtures) == 2
+    assert told == sorted(told) and told[0] < 0.5 and 0.5 < told[-1] <= 1.0
+    for limit in (0.0, 0.5, 0.75):
+        with pytest.raises(swarf.Cancelled):
+            native.to_job(data, lambda done, limit=limit: done >= limit)
+
+
 def test_another_tolerance_is_judged_without_cutting_again(swarf):
     from swarf_cam import checks
 

@@ -11,7 +11,7 @@ import pytest
 import swarf
 from swarf import loads, wording
 from swarf.job import Job
-from swarf.verify import check_text, place_text, uncut_text
+from swarf.verify import _UNITS, check_text, place_text, uncut_text
 
 PLATE = ((0.0, 0.0, -10.0), (60.0, 40.0, 0.0))
 
@@ -133,35 +133,57 @@ def test_another_language_has_the_same_values():
     assert wording.Said("set-up", job="{x}", text=said).translated(lambda form: form) == f"set-up '{{x}}': {said}"
 
 
-def sentences(path):
-    """(key, names of the values or None: not to be seen) of the sentences that a file says by their keys."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if not isinstance(node, ast.Call):
-            continue
-        called = getattr(node.func, "attr", getattr(node.func, "id", None))
-        names = {keyword.arg for keyword in node.keywords}
-        if called in ("Said", "said") or (called == "fail" and path.name == "brep.py"):
-            keys = node.args[:1]
-        elif called == "solve" and path.name == "brep.py":
-            keys, names = node.args[2:], {"x", "y", "z"}
-        else:
-            continue
-        for key in (part for arg in keys for part in ([arg.body, arg.orelse] if isinstance(arg, ast.IfExp) else [arg])):
-            if isinstance(key, ast.Constant):
-                yield key.value, None if None in names else names
+PARTS, UNCUT = ("flutes", "shank", "holder"), ("no tool", "unknown tool", "no flutes", "axis", "idle")
+
+#: Keys that are made when they are said, by file, function and expression: all that may come of it.
+MADE = {
+    ("brep.py", "fail", "key"): (),  # which is looked at where it is called
+    ("brep.py", "solve", "lost"): ("edge lost", "corner lost"),
+    ("native.py", "said", "key"): (),  # so is this
+    ("loads.py", "text", "name"): [entry[2] for entry in loads.KINDS.values()],
+    ("loads.py", "text", "unit"): [entry[1] for entry in loads.KINDS.values()],
+    ("verify.py", "_idle_text", "key"): ("of tolerance", "of allowance", "of both"),
+    ("verify.py", "check_text", "key"): (
+        "rapid", "start", "depth", "near", "shank", "holder", "feed", "spindle stopped", "spindle backwards",
+        "tool none", "tool missing", "tool blunt", *(f"fixture {part}" for part in PARTS),
+        *(f"design {part}" for part in PARTS)),
+    ("verify.py", "uncut_text", "f'uncut {found.kind}'"): [f"uncut {kind}" for kind in UNCUT],
+    ("verify.py", "place_text", "f'place {kind}'"): ("place empty", "place out"),
+    ("verify.py", "place_text", "units"): [words for _, words in _UNITS],
+    ("verify.py", "_cluster_finding", "key"): ("gouge", "gouge of no move", "excess", "excess away", "not reached"),
+}
 
 
-def test_all_that_is_said_has_a_form():
+def sentences(node, path, function=""):
+    """(key, or the place in MADE where it is made; names of the values, None: not to be seen) of what a file says."""
+    inner = node.name if isinstance(node, ast.FunctionDef) else function
+    for child in ast.iter_child_nodes(node):
+        yield from sentences(child, path, inner)
+    called = getattr(node, "func", None)
+    called = getattr(called, "attr", getattr(called, "id", None))
+    if called not in ("Said", "said") and not (called == "fail" and path.name == "brep.py"):
+        return
+    names = {keyword.arg for keyword in node.keywords}
+    key = node.args[0]
+    for one in (key.body, key.orelse) if isinstance(key, ast.IfExp) else (key,):
+        made = one.value if isinstance(one, ast.Constant) else (path.name, function, ast.unparse(one))
+        yield made, None if None in names else names
+
+
+def test_all_that_is_said_has_a_form_and_all_forms_are_said():
     sources = pathlib.Path(__file__).parents[2]
-    said = [(path.name, *found) for folder in ("bindings/swarf", "freecad_mod/freecad")
-            for path in sorted((sources / folder).rglob("*.py")) for found in sentences(path)]
-    assert len(said) > 30
-    assert {name for name, *_ in said} >= {"brep.py", "regions.py", "verify.py", "loose.py", "model.py"}
-    for name, key, values in said:
-        assert key in wording.FORMS, (name, key)
-        wanted = {field for _, field, _, _ in string.Formatter().parse(wording.FORMS[key]) if field}
-        assert values is None or wanted <= values, (name, key, wanted - values)
-    assert all(entry[-1] in wording.FORMS for entry in loads.KINDS.values())
+    said = [found for folder in ("bindings/swarf", "freecad_mod/freecad")
+            for path in sorted((sources / folder).rglob("*.py"))
+            for found in sentences(ast.parse(path.read_text(encoding="utf-8")), path)]
+    assert {made for made, _ in said if isinstance(made, tuple)} == set(MADE)
+    seen = set()
+    for made, values in said:
+        for key in MADE[made] if isinstance(made, tuple) else (made,):
+            assert key in wording.FORMS, (made, key)
+            wanted = {field for _, field, _, _ in string.Formatter().parse(wording.FORMS[key]) if field}
+            assert values is None or wanted <= values, (made, key, wanted - values)
+            seen.add(key)
+    assert seen == set(wording.FORMS)
 
 
 def test_what_has_no_form_is_no_lookup_error():

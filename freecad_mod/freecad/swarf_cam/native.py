@@ -7,6 +7,7 @@ import importlib
 import os
 import sys
 from dataclasses import dataclass, field
+from typing import Optional
 
 from . import FOLDER
 from .core.errors import JobError
@@ -70,20 +71,21 @@ def to_cutters(tools):
     return result
 
 
-def _holders():
-    return importlib.import_module(load().__name__ + ".holders")
+def _package(name):
+    """A module of swarf, by its name there."""
+    return importlib.import_module("%s.%s" % (load().__name__, name))
 
 
 def holder_names():
     """Names of the library of holders."""
-    return _holders().names()
+    return _package("holders").names()
 
 
 def hold_one(cutter, name, stickout, what):
     """(cutter in a holder, what is doubtful about it). JobError, which begins with `what`, for a holder that is
     impossible or has no stickout."""
     try:
-        return _holders().hold(cutter, name, stickout, what)
+        return _package("holders").hold(cutter, name, stickout, what)
     except ValueError as error:
         raise JobError(str(error)) from error
 
@@ -97,14 +99,14 @@ def hold(cutters, data):
             continue
         cutters[number], doubts = hold_one(cutters[number], name, stickout,
                                            "the tool '%s' (T%d)" % (data.tools[number][0], number))
-        texts[number] = _holders().describe(name, stickout)
+        texts[number] = _package("holders").describe(name, stickout)
         notes += doubts
     return texts, notes
 
 
 def to_accepted(name, entries):
     """swarf.accept.Acceptances of the entries in a job of this name; JobError for an entry that is none."""
-    accept = importlib.import_module(load().__name__ + ".accept")
+    accept = _package("accept")
     try:
         return [accept.make(entry, "the job '%s', acceptance %d" % (name, number))
                 for number, entry in enumerate(entries, 1)]
@@ -112,13 +114,16 @@ def to_accepted(name, entries):
         raise JobError(str(error)) from error
 
 
-def to_fixtures(data):
-    """swarf.Meshes of a JobData's fixtures; JobError names the one that encloses nothing."""
+def to_fixtures(data, progress=None):
+    """swarf.Meshes of a JobData's fixtures; JobError names the one that encloses nothing. swarf.Cancelled."""
     swarf, result = load(), []
-    for name, mesh in data.fixtures:
+    share = functools.partial(_package("progress").share, progress)
+    for number, (name, mesh) in enumerate(data.fixtures):
         result.append(to_mesh(mesh))
         try:
-            swarf.Solid(result[-1])
+            swarf.Solid(result[-1], progress=share(number / len(data.fixtures), (number + 1) / len(data.fixtures)))
+        except swarf.Cancelled:
+            raise
         except (ValueError, swarf.Error) as error:
             raise JobError("the fixture '%s': %s" % (name, error)) from error
     return result
@@ -126,7 +131,7 @@ def to_fixtures(data):
 
 def pieces(shells):
     """Places of the shells (with volume_mm3 and bounding_box) of each solid piece, its cavities behind it."""
-    return importlib.import_module(load().__name__ + ".parts").pieces(shells)
+    return _package("parts").pieces(shells)
 
 
 def to_program(table):
@@ -134,20 +139,23 @@ def to_program(table):
     return table.play(load().Program())
 
 
-def to_job(data):
-    """swarf.Job, the command line's view of a job."""
-    stock = dict(data.stock)
+def to_job(data, progress=None):
+    """swarf.Job, the command line's view of a job. progress: of looking at the fixtures, called with the fraction done;
+    a true answer cancels (swarf.Cancelled)."""
+    share = functools.partial(_package("progress").share, progress)
+    stock, begin = dict(data.stock), 0.0
     if stock["kind"] == "mesh":
         stock["mesh"] = to_mesh(stock["mesh"])
     elif stock["kind"] == "result":
-        stock["job"] = to_job(stock["job"])
+        begin = 0.5
+        stock["job"] = to_job(stock["job"], share(0.0, begin))
     cutters = to_cutters(data.tools)
     holders, doubts = hold(cutters, data)
     return load().Job(name=data.name, program=to_program(data.moves), tools=cutters,
                       tool_names={number: name for number, (name, _) in data.tools.items()}, stock=stock,
                       design=to_mesh(data.design) if data.design else None, notes=list(data.notes) + doubts,
                       teeth=dict(data.teeth), holders=holders, accepted=to_accepted(data.name, data.accepted),
-                      fixtures=to_fixtures(data))
+                      fixtures=to_fixtures(data, share(begin, 1.0)))
 
 
 @dataclass
@@ -163,8 +171,8 @@ class Result:
     removed: list
     volume_initial: float
     volume_final: float
-    excess: float = None
-    gouge: float = None
+    excess: Optional[float] = None
+    gouge: Optional[float] = None
     findings: list = field(default_factory=list)
     errors: int = 0
     seconds: float = 0.0
@@ -182,14 +190,14 @@ def estimate(lo, hi, voxel_mm):
     return load().Stock.estimate(lo, hi, voxel_mm)
 
 
-# Where each stage of swarf.simulate() begins and how much of the whole it is, about.
-STAGES = {"stock": (0.0, 0.1), "cut": (0.1, 0.4), "loose": (0.5, 0.05), "mesh": (0.55, 0.1), "compare": (0.65, 0.2),
-          "write": (0.85, 0.05), "colours": (0.9, 0.1)}
+# Where each stage of simulate() begins and how much of the whole it is, about.
+STAGES = {"fixtures": (0.0, 0.02), "stock": (0.02, 0.08), "cut": (0.1, 0.4), "loose": (0.5, 0.05),
+          "mesh": (0.55, 0.1), "compare": (0.65, 0.2), "write": (0.85, 0.05), "colours": (0.9, 0.1)}
 
 
 def text_of(item, job):
     """What a swarf.Finding of a swarf.Job says, in words that can be translated."""
-    return importlib.import_module(load().__name__ + ".verify").uncut_text(item, job)
+    return _package("verify").uncut_text(item, job)
 
 
 def _findings(job, found):
@@ -212,15 +220,15 @@ def simulate(data, voxel_mm, folder, progress=None):
         begin, share = STAGES[stage]
         return progress(begin + share * fraction)
 
-    done = swarf.simulate(to_job(data), voxel=voxel_mm, outputs=[mesh_file, stock_file],
-                          progress=report if progress else None)
+    job = to_job(data, (lambda fraction: report("fixtures", fraction)) if progress else None)
+    done = swarf.simulate(job, voxel=voxel_mm, outputs=[mesh_file, stock_file], progress=report if progress else None)
     outcome, comparison = done.simulation, done.comparison
     names = data.moves.operations
     # a set-up before that was kept says nothing here: its own simulation has said it
     findings = [(*line, job.name) for job, played in done.before for line in _findings(job, played.findings)]
     findings += [(*line, None) for line in _findings(done.job, outcome.findings)]
     findings += [("warning", piece.operation, piece.line, piece.text, None) for piece in done.loose.pieces]
-    tints = importlib.import_module(swarf.__name__ + ".colours").make(
+    tints = _package("colours").make(
         "operation", done.mesh, done.surface, done.job,
         progress=(lambda fraction: report("colours", fraction)) if progress else None)
     parts = {tint: tuple(part / 255 for part in tint) for tint in set(tints)}
@@ -234,7 +242,7 @@ def simulate(data, voxel_mm, folder, progress=None):
 
 def said(key, **values):
     """A sentence of swarf.wording."""
-    return importlib.import_module(load().__name__ + ".wording").Said(key, **values)
+    return _package("wording").Said(key, **values)
 
 
 # Error of a mesh where nobody says, in voxels: swarf.simulate's own.
@@ -244,11 +252,10 @@ MESH_ERROR_VOXELS = 0.1
 def _exact(data, stock_file, progress=None):
     """(swarf.Job, what is left of its stock, the exact surface of that)."""
     swarf = load()
-    stocks, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name)) for name in ("stocks", "progress"))
-    share = functools.partial(shares.share, progress)
-    job = to_job(data)
-    left = swarf.Stock.read(stock_file, progress=share(0, 0.25))
-    first = stocks.make_first(job.stock, voxel=left.voxel, progress=share(0.25, 0.75))
+    share = functools.partial(_package("progress").share, progress)
+    job = to_job(data, share(0, 0.02))
+    left = swarf.Stock.read(stock_file, progress=share(0.02, 0.25))
+    first = _package("stocks").make_first(job.stock, voxel=left.voxel, progress=share(0.25, 0.75))
     return job, left, first.surface(job.program, job.tools, progress=share(0.75, 1))
 
 
@@ -266,8 +273,8 @@ class Analytic:
     None where it was not measured; reason: why there is no file, None when there is; volume_mm3 and area_mm2 of the
     mesh it was made of, which is within error_mm; faces: their number."""
 
-    share: float
-    reason: str = None
+    share: Optional[float]
+    reason: Optional[str] = None
     volume_mm3: float = 0.0
     area_mm2: float = 0.0
     error_mm: float = 0.0
@@ -278,8 +285,7 @@ def export_analytic(data, stock_file, path, largest=False, progress=None):
     """Write what is left of a JobData's stock as a STEP file of analytic faces -> Analytic, without a file where the
     stock is not bounded by such faces alone. Raises and the rest as export()."""
     swarf = load()
-    brep, step, solids, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))
-                                         for name in ("brep", "step", "solids", "parts", "progress"))
+    brep, step, solids, parts, shares = map(_package, ("brep", "step", "solids", "parts", "progress"))
     share = functools.partial(shares.share, progress)
     _, left, surface = _exact(data, stock_file, share(0, 0.4))
     error = SOLID_ERROR_VOXELS * left.voxel
@@ -310,8 +316,7 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, toleran
     or no mesh is that small; swarf.Error, OSError.
     """
     swarf = load()
-    colours, parts, shares = (importlib.import_module("%s.%s" % (swarf.__name__, name))
-                              for name in ("colours", "parts", "progress"))
+    colours, parts, shares = map(_package, ("colours", "parts", "progress"))
     share = functools.partial(shares.share, progress)
     job, left, surface = _exact(data, stock_file, share(0, 0.4))
     mesh = swarf.Mesh.from_stock(left, MESH_ERROR_VOXELS * left.voxel if error_mm is None else error_mm, budget=budget,

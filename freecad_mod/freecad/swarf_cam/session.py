@@ -35,8 +35,9 @@ PROBE_REACH, PROBE_REACH_EXACT, PROBE_VOXEL = 0.35, 0.05, 0.3
 # Stock in the colours of its deviation: as light as the colours of the legend want it, linear.
 TINTED_MATERIAL = (0.8, 0.8, 0.8)
 
-# Until when, about, opening makes the stock, and until when it cuts it once; the rest is finding the exact surface.
-OPEN_SHARE, SURFACE_SHARE = 0.3, 0.9
+# Until when, about, opening looks at the fixtures, makes the stock, and cuts it once; the rest is finding the exact
+# surface.
+FIXTURES_SHARE, OPEN_SHARE, SURFACE_SHARE = 0.02, 0.3, 0.9
 
 
 # What of stock and design a picture shows.
@@ -118,19 +119,19 @@ class Session:
     def __init__(self, data, voxel_mm, progress):
         swarf = native.load()
         self.data, self.voxel_mm = data, voxel_mm
-        self.job = native.to_job(data)
-        self.program, self.tools = self.job.program, self.job.tools
-        from swarf.stocks import make_first, stock_box  # of the package, once it is known to be there
+        from swarf.progress import share  # of the package, once it is known to be there
+        from swarf.stocks import make_first, stock_box
 
+        self.job = native.to_job(data, share(progress, 0, FIXTURES_SHARE))
+        self.program, self.tools = self.job.program, self.job.tools
         self.box = tuple(tuple(float(value) for value in corner) for corner in stock_box(self.job.stock))
-        share = self._share(progress)
-        first = make_first(self.job.stock, voxel=voxel_mm, progress=share(0, OPEN_SHARE))
+        first = make_first(self.job.stock, voxel=voxel_mm, progress=share(progress, FIXTURES_SHARE, OPEN_SHARE))
         stock = first.stock
         self.clock = Clock(data.moves)
         self.listing = Listing(data.moves, data.operations)
         self._keywords = known_keywords()
         self._swarf = swarf
-        self.overview = self._look_ahead(stock, share(OPEN_SHARE, SURFACE_SHARE))
+        self.overview = self._look_ahead(stock, share(progress, OPEN_SHARE, SURFACE_SHARE))
         self.tool_changes = [float(index) for index in range(len(data.moves)) if self._is_tool_change(index)]
         self.stops = {STOP_OPERATION: [float(begin) for begin in self.listing.operation_begin[1:]],
                       STOP_TOOL_CHANGE: self.tool_changes,
@@ -140,16 +141,12 @@ class Session:
         self._stock, self._scene = stock, swarf.Scene(stock)
         self._exact = hasattr(swarf.Scene, "show_surface")  # the native module can show more than the voxels
         if self._exact:
-            self._scene.show_surface(first.surface(self.program, self.tools, progress=share(SURFACE_SHARE, 1)))
+            self._scene.show_surface(
+                first.surface(self.program, self.tools, progress=share(progress, SURFACE_SHARE, 1)))
         if hasattr(swarf.Scene, "set_fixtures"):
             self._scene.set_fixtures(self.job.fixtures)
         limit = int(HISTORY_SHARE * native.estimate(*self.box, voxel_mm))
         self._playback = Playback(swarf.History(stock, self.program, self.tools, memory_limit=limit))
-
-    @staticmethod
-    def _share(progress):
-        """(begin, end) -> the progress of this part of the whole."""
-        return lambda begin, end: lambda done: progress(begin + (end - begin) * done)
 
     def _is_tool_change(self, index):
         row = self.data.moves.row(index)
