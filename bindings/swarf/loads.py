@@ -108,6 +108,11 @@ def read(path: str, material: Optional[str] = None) -> Limits:
     return merge(general, parts[material])
 
 
+def unknown_chips(limits: Limits, used: Iterable[int], teeth: Mapping[int, int]) -> list[int]:
+    """The tools, of those that are used, whose chips have a limit and are not known: nothing tells their teeth."""
+    return [tool for tool in used if tool not in teeth and limit(limits, tool, "chip") is not None]
+
+
 def value_of(kind: str, value: float) -> float:
     """What counts of a load: 0 for the engagement of a plunge."""
     return 0.0 if kind == "engagement" and value > MOST_SIDEWAYS else value

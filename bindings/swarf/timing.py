@@ -30,9 +30,13 @@ def read_machine(path: str) -> dict[str, Any]:
         if key not in KEYS:
             raise ValueError(f"{path}: {key!r} is not known; {', '.join(KEYS)} are")
         values = value if isinstance(value, list) and key in BY_AXIS and len(value) == 3 else [value]
-        if not all(type(number) in (int, float) and math.isfinite(number) and number >= 0 for number in values):
+        if not all(type(number) in (int, float) and abs(number) < 1e15 for number in values):
             three = ", or three for X, Y, Z" if key in BY_AXIS else ""
-            raise ValueError(f"{path}: {key}: {value!r} is no number of 0 or above{three}")
+            raise ValueError(f"{path}: {key}: {value!r} is no number{three}")
+    try:
+        Program().times(**limits)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
     return limits
 
 

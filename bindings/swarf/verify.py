@@ -278,7 +278,13 @@ def _load_findings(job: Job, checked: Check, limits: Limits) -> list[Verdict]:
         return []
     return [Verdict("warning", found.text, "load", *operation_of(job, found.move), found.move,
                     _end_of(job, found.move), amount=found.value)
-            for found in loading.exceeded(job.program, checked.loads, limits)]
+            for found in loading.exceeded(job.program, checked.loads, _limits_of(job, limits))]
+
+
+def _limits_of(job: Job, limits: Limits) -> Limits:
+    """Limits with those of the tool that is used where none is named."""
+    unnamed = number_of(job, -1)
+    return {**limits, -1: limits[unnamed]} if unnamed in limits else limits
 
 
 def _end_of(job: Job, move: int) -> tuple[float, float, float]:

@@ -146,23 +146,31 @@ static double seconds_of(const way *w, double in, double out)
     return (2.0 * peak - in - out) / w->acceleration + fmax(0.0, w->length - ramps) / peak;
 }
 
+static int is_speed(double value)
+{
+    return value > 0.0 && value <= 1e9;
+}
+
 static swarf_status check_limits(const swarf_machine_limits *limits)
 {
     SWARF_REQUIRE(limits->size == sizeof *limits, "time: limits of %zu bytes; take swarf_machine_limits_default()",
                   limits->size);
     for (int k = 0; k < 3; k++) {
-        SWARF_REQUIRE(limits->rapid_mm_min[k] > 0.0 && limits->rapid_mm_min[k] <= 1e9 && limits->feed_mm_min[k] > 0.0 &&
-                          limits->feed_mm_min[k] <= 1e9,
-                      "time: %c must have a rapid and a feed above 0 mm/min", "XYZ"[k]);
-        SWARF_REQUIRE(limits->acceleration_mm_s2[k] >= 0.0 && limits->acceleration_mm_s2[k] <= 1e9,
-                      "time: the acceleration of %c is %g; 0 (at once) or above is possible", "XYZ"[k],
-                      limits -> acceleration_mm_s2[k]);
+        const char axis = "XYZ"[k];
+        const double rapid = limits->rapid_mm_min[k], feed = limits->feed_mm_min[k];
+        const double acceleration = limits->acceleration_mm_s2[k];
+        SWARF_REQUIRE(is_speed(rapid), "time: rapid_mm_min of %c is %g; above 0 and up to 1e9 is possible", axis,
+                      rapid);
+        SWARF_REQUIRE(is_speed(feed), "time: feed_mm_min of %c is %g; above 0 and up to 1e9 is possible", axis, feed);
+        SWARF_REQUIRE(acceleration >= 0.0 && acceleration <= 1e9,
+                      "time: acceleration_mm_s2 of %c is %g; 0 (at once) to 1e9 is possible", axis, acceleration);
     }
-    SWARF_REQUIRE(limits->junction_mm >= 0.0 && limits->junction_mm <= 1e3, "time: junctions of %g mm",
-                  limits->junction_mm);
-    SWARF_REQUIRE(limits->rotary_deg_min > 0.0 && limits->rotary_deg_min <= 1e9, "time: rotary axes need a speed");
-    SWARF_REQUIRE(limits->tool_change_s >= 0.0 && limits->tool_change_s <= 1e6, "time: a tool change of %g s",
-                  limits->tool_change_s);
+    SWARF_REQUIRE(limits->junction_mm >= 0.0 && limits->junction_mm <= 1e3,
+                  "time: junction_mm is %g; 0 to 1000 is possible", limits->junction_mm);
+    SWARF_REQUIRE(is_speed(limits->rotary_deg_min), "time: rotary_deg_min is %g; above 0 and up to 1e9 is possible",
+                  limits->rotary_deg_min);
+    SWARF_REQUIRE(limits->tool_change_s >= 0.0 && limits->tool_change_s <= 1e6,
+                  "time: tool_change_s is %g; 0 to 1e6 is possible", limits->tool_change_s);
     return SWARF_OK;
 }
 

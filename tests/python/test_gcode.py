@@ -2,6 +2,7 @@
 """read_gcode(), its buffers, swarf check and swarf moves."""
 import json
 import math
+import re
 import struct
 
 import conftest
@@ -135,12 +136,19 @@ def test_times_by_tool_and_operation(tmp_path):
         ('{"feed_mm_min": "fast"}', "feed_mm_min"),
         ('{"feed_mm_min": true}', "feed_mm_min"),
         ('{"feed_mm_min": NaN}', "feed_mm_min"),
+        ('{"feed_mm_min": 1%s}' % (400 * "0"), "feed_mm_min"),
+        ('{"rapid_mm_min": 0}', "rapid_mm_min of X is 0; above 0"),
+        ('{"feed_mm_min": [1, 1, 1e10]}', r"feed_mm_min of Z is 1e\+10; above 0 and up to 1e9"),
+        ('{"acceleration_mm_s2": [1, -1, 1]}', "acceleration_mm_s2 of Y is -1; 0 "),
+        ('{"junction_mm": -1}', "junction_mm is -1; 0 to 1000"),
+        ('{"rotary_deg_min": 0}', "rotary_deg_min is 0; above 0"),
+        ('{"tool_change_s": 1e7}', r"tool_change_s is 1e\+07; 0 to 1e6"),
     ],
 )
 def test_impossible_machines(tmp_path, text, says):
     machine = tmp_path / "m.json"
     machine.write_text(text)
-    with pytest.raises(ValueError, match=says):
+    with pytest.raises(ValueError, match=f"^{re.escape(str(machine))}: .*{says}"):
         timing.read_machine(machine)
 
 

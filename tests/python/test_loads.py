@@ -10,7 +10,7 @@ import sys
 import pytest
 
 import swarf
-from swarf import accept, document, loads, plots, report
+from swarf import accept, cli, document, loads, plots, report
 from swarf.verify import Verdict
 from test_verify import DESIGN, faced, HI, LO
 
@@ -223,6 +223,20 @@ def command(tmp_path, *words):
         capture_output=True, text=True, timeout=120, check=False)
 
 
+def test_a_limit_of_chips_that_are_not_known_is_said(tmp_path, capsys):
+    assert loads.unknown_chips({None: {"chip": 0.1}}, (1, 2, 3), {2: 2}) == [1, 3]
+    assert loads.unknown_chips({3: {"chip": 0.1}, None: {"rate": 1}}, (1, 2, 3), {2: 2}) == [3]
+    assert loads.unknown_chips({None: {"rate": 1}}, (1, 2, 3), {}) == []
+    program, design = tmp_path / "part.nc", tmp_path / "design.stl"
+    program.write_text("G21 G90 F300\nS8000 M3\nG0 X-5 Y5 Z5\nG1 Z-1\nX45\nG0 Z5\nM2\n")
+    DESIGN.write(str(design))
+    cli.main(["verify", str(program), "--design", str(design), "--voxel", "1", "--stock", "box:0,0,-10,40,30,0",
+              "--tool", "4=flat:d=6,l=20", "--limit", "4:chip=0.1", "--limit", "4:engagement=10"])
+    told = capsys.readouterr().err
+    assert "limit of chip thickness is not checked for tool 4" in told
+    assert "exceeds the limit of 10 deg" in told, "the program names no tool, and its only one has limits"
+
+
 def test_command_line(tmp_path):
     done = command(tmp_path, "--limit", "engagement=80", "--limit", "1:chip=0.001", "--report",
                    str(tmp_path / "r.json"))
@@ -234,5 +248,7 @@ def test_command_line(tmp_path):
     done = command(tmp_path, "--accept", str(tmp_path / "accept.json"), "--no-loads")
     assert done.returncode == 0 and "(accepted: agreed)" in done.stderr and "passed" in done.stdout
     assert command(tmp_path, "--limit", "speed=3").returncode == 2
+    done = command(tmp_path, "--limit", "2:engagement=80")
+    assert done.returncode == 2 and done.stderr == "swarf: error: limit of tool 2: there is no such tool; there are 1\n"
     assert "--limits" in command(tmp_path, "--material", "steel").stderr
     assert "teeth" in command(tmp_path, "--tool", "2=flat:d=6,l=20,teeth=0").stderr

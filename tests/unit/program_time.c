@@ -118,7 +118,7 @@ int main(void)
     limits = limits_of(400, 0);
     limits.rapid_mm_min[2] = 0;
     program = program_at_zero();
-    CHECK_FAILS(swarf_program_times(program, &limits, t), SWARF_ERROR_ARGUMENT, "Z must have a rapid");
+    CHECK_FAILS(swarf_program_times(program, &limits, t), SWARF_ERROR_ARGUMENT, "rapid_mm_min of Z is 0; above 0");
     swarf_program_release(program);
     return test_end();
 }

@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import sys
 import time
-from typing import Any
+from typing import Any, Sequence
 
 from .. import accept, document, inputs, loads, pdf, report
 from ..console import DONE, FINDINGS, check_outputs, one_line, say
 from ..files import write_text
+from ..job import Job, number_of
 from ..progress import Bar
 from ..verify import CAD_SUFFIXES, DESIGN_SUFFIXES, Verdict, read_design, verify
 
@@ -58,6 +60,14 @@ def _limit(word: str) -> loads.Limits:
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
+def _check_tools(words: Sequence[loads.Limits], job: Job) -> None:
+    """ValueError for a ``--limit`` of a tool that the job has not."""
+    for tool in (tool for limits in words for tool in limits if tool is not None):
+        if tool not in job.tools:
+            raise ValueError(f"limit of tool {tool}: there is no such tool; there are "
+                             f"{', '.join(str(number) for number in sorted(job.tools) if number >= 0)}")
+
+
 def finding_line(finding: Verdict) -> str:
     """A finding as one line: severity, line of the program, text, place."""
     where = f" line {finding.line}:" if finding.line else ""
@@ -97,6 +107,7 @@ def run(arguments: argparse.Namespace) -> int:
             arguments.design, tightest, lambda fraction: bar("read", fraction))
         job = inputs.read_job(arguments, bar)
         check_outputs(arguments.report, (*sources, *inputs.files_of(job)))
+        _check_tools(arguments.limit, job)
         if design is None and job.design is None:
             raise ValueError(f"{arguments.input}: it has no design to verify against; give --design FILE")
         seconds_read = time.perf_counter() - started
@@ -118,6 +129,10 @@ def run(arguments: argparse.Namespace) -> int:
             else:
                 report.write(made, path)
     inputs.print_notes(job)
+    used = [number_of(job, tool) for tool in job.program.tools]
+    for tool in loads.unknown_chips(limits, used, job.teeth):
+        print(f"swarf: warning: the limit of chip thickness is not checked for tool {tool}: nothing tells its teeth, "
+              f"as --tool {tool}=...,teeth=2 does", file=sys.stderr)
     inputs.print_findings([finding_line(finding) for finding in done.findings])
     say([f"{arguments.input}: {'passed' if done.passed else 'FAILED'}, tolerance +{done.tolerance[0]:g} "
          f"-{done.tolerance[1]:g} mm, voxel {done.result.stock.voxel:g} mm"])
