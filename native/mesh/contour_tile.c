@@ -18,11 +18,6 @@ typedef struct tiling {
     double flat; /* mm */
 } tiling;
 
-static int sign_at(const contour_block *block, int x, int y, int z)
-{
-    return block->inside[x][y] >> z & 1;
-}
-
 /* Cells of a block with all coordinates in lo .. hi - 1, one of the eight words. */
 static uint64_t cells_within(int y_lo, int y_hi, int z_lo, int z_hi)
 {
@@ -40,25 +35,33 @@ static int is_empty(const contour_block *block, const int at[3], int edge)
     return 1;
 }
 
+/* Nine places of a cube along each pair of axes, 27 bits in all: bit x * 9 + y * 3 + z, each coordinate low, middle or
+ * high. */
+enum { ALL_PLACES = 0x7ffffff, CORNER_PLACES = 0x5140145, LOW_X = 0x1ff, LOW_Y = 0x1c0e07, LOW_Z = 0x1249249 };
+
+/* Places in whose edge, face or cube one of these corners is. */
+static uint32_t reach_of(uint32_t corners)
+{
+    uint32_t places = corners;
+    places |= ((places | places >> 18) & LOW_X) << 9;
+    places |= ((places | places >> 6) & LOW_Y) << 3;
+    return places | ((places | places >> 2) & LOW_Z) << 1;
+}
+
 /* Whether the cubes within a tile may become one, level by level. */
 static int is_simple(const contour *work, const contour_block *block, const int at[3], int edge)
 {
     if (edge == 1) return 1;
     const int half = edge / 2;
-    int sign[27], config = 0;
-    for (int i = 0; i < 27; i++)
-        sign[i] = sign_at(block, at[0] + i / 9 * half, at[1] + i / 3 % 3 * half, at[2] + i % 3 * half);
-    for (int i = 0; i < 27; i++) { /* where a coordinate is in the middle, the corners are those on both sides */
-        const int part[3] = {i / 9, i / 3 % 3, i % 3};
-        int seen = 0;
-        for (int c = 0; c < 8; c++) {
-            const int x = part[0] == 1 ? c >> 1 & 2 : part[0], y = part[1] == 1 ? c & 2 : part[1];
-            const int z = part[2] == 1 ? c << 1 & 2 : part[2];
-            seen |= sign[x * 9 + y * 3 + z] == sign[i];
-        }
-        if (!seen) return 0;
+    uint32_t inside = 0;
+    for (int i = 0; i < 9; i++) {
+        const unsigned row = (unsigned)block->inside[at[0] + i / 3 * half][at[1] + i % 3 * half] >> at[2];
+        inside |= ((row & 1) | (row >> half & 1) << 1 | (row >> edge & 1) << 2) << (3 * i);
     }
-    for (int c = 0; c < 8; c++) config |= sign[(c >> 2) * 18 + (c >> 1 & 1) * 6 + (c & 1) * 2] << c;
+    const uint32_t outside = ~inside & ALL_PLACES;
+    if ((inside & ~reach_of(inside & CORNER_PLACES)) | (outside & ~reach_of(outside & CORNER_PLACES))) return 0;
+    unsigned config = 0;
+    for (int c = 0; c < 8; c++) config |= (inside >> ((c >> 2) * 18 + (c >> 1 & 1) * 6 + (c & 1) * 2) & 1) << c;
     const contour_case *joined = &work->table.entry[config][0];
     if (joined->count != 1 || joined->twice_on_face != SWARF_NO_FACE) return 0;
     for (int c = 0; c < 8; c++) {
