@@ -35,6 +35,7 @@ typedef struct job {
     uint32_t *cube;      /* of every vertex */
     uint32_t *local;     /* of every vertex, the number in its cube */
     uint8_t *settled;    /* vertices that cannot go at this limit unless something near them does */
+    uint8_t *zone;       /* of every vertex, in the last pass at a limit; else NULL */
     size_t *owned_begin; /* cubes + 1 */
     size_t *shared_begin;
     uint32_t *owned;  /* facets by cube */
@@ -64,11 +65,32 @@ static swarf_status find_cubes(void *context, size_t index)
     return SWARF_OK;
 }
 
+/* In the last pass few vertices are not settled, and only they and those beside them may go; what is asked about that
+ * reaches two vertices further, and no other facets are looked at: one thread has all that are. */
+enum { ZONE_FAR, ZONE_RIM, ZONE_BESIDE, ZONE_UNSETTLED };
+
+static swarf_status find_zones(job *j)
+{
+    const swarf_facets *facets = j->facets;
+    j->zone = malloc(facets->vertex_count);
+    if (!j->zone) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    for (size_t i = 0; i < facets->vertex_count; i++) j->zone[i] = j->settled[i] ? ZONE_FAR : ZONE_UNSETTLED;
+    for (uint8_t zone = ZONE_UNSETTLED; zone > ZONE_RIM; zone--)
+        for (size_t f = 0; f < facets->facet_count; f++) {
+            const uint32_t *v = facets->facet[f].v;
+            if (j->zone[v[0]] < zone && j->zone[v[1]] < zone && j->zone[v[2]] < zone) continue;
+            for (int k = 0; k < 3; k++)
+                if (j->zone[v[k]] < zone - 1) j->zone[v[k]] = (uint8_t)(zone - 1);
+        }
+    return SWARF_OK;
+}
+
 /* Facets by cube, counted and then put; a facet over several cubes is shared by each of them. */
 static void sort_facets(job *j, int put)
 {
     for (size_t f = 0; f < j->facets->facet_count; f++) {
         const uint32_t *v = j->facets->facet[f].v;
+        if (j->zone && !(j->zone[v[0]] | j->zone[v[1]] | j->zone[v[2]])) continue;
         const size_t c[3] = {j->cube[v[0]], j->cube[v[1]], j->cube[v[2]]};
         if (c[0] == c[1] && c[1] == c[2]) {
             if (put)
@@ -208,10 +230,11 @@ static int add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, i
             r->global[own] = vertex;
             r->head[own] = SWARF_NO_VERTEX;
             r->mark[own] = 0;
-            r->need[own] = INFINITY;
+            r->need[own] = j->settled[vertex] ? INFINITY : 0;
             const unsigned marks = j->marks ? j->marks[vertex] : SWARF_VERTEX_TOUCHED;
             touched |= (marks & SWARF_VERTEX_TOUCHED) != 0;
-            r->state[own] = marks & SWARF_VERTEX_LOCKED ? SIMPLIFY_FIXED : j->settled[vertex] ? 0 : SIMPLIFY_DIRTY;
+            const int fixed = marks & SWARF_VERTEX_LOCKED || (j->zone && j->zone[vertex] < ZONE_BESIDE);
+            r->state[own] = fixed ? SIMPLIFY_FIXED : j->settled[vertex] ? 0 : SIMPLIFY_DIRTY;
             for (int c = 0; c < 3; c++)
                 r->xyz[3 * (size_t)own + (size_t)c] = j->facets->xyz[3 * (size_t)vertex + (size_t)c];
         }
@@ -316,6 +339,7 @@ static swarf_status run_pass(job *j, const struct pass *pass, double voxel, cons
     lay_out(j, pass, voxel);
     SWARF_TRY(lay_out_memo(j));
     const size_t cubes = j->count[0] * j->count[1] * j->count[2];
+    if (pass == &passes[PASSES - 1]) SWARF_TRY(find_zones(j));
     j->owned_begin = calloc(cubes, sizeof *j->owned_begin);
     j->shared_begin = calloc(cubes, sizeof *j->shared_begin);
     j->gone = calloc(cubes, sizeof *j->gone);
@@ -342,6 +366,8 @@ static void free_pass(job *j)
     free(j->owned);
     free(j->shared);
     free(j->gone);
+    free(j->zone);
+    j->zone = NULL;
     j->owned_begin = j->shared_begin = j->gone = NULL;
     j->owned = j->shared = NULL;
 }

@@ -259,7 +259,7 @@ static int try_draw(ring *around, int j, double limit, double least, double *err
     double shape = 1;
     if (around->slab < 0 && !around->crease[j]) {
         *error = around->error + lift(around, j);
-        if (*error > limit) return 0;
+        if (*error > limit || score_of(1, *error, limit) <= least) return 0;
     }
     *error = INFINITY;
     int i = j + 1 < n ? j + 1 : 0;
@@ -394,6 +394,7 @@ static int remove_vertex(simplify_region *r, uint32_t v, double limit, int flat_
     if (around.slab < 0) {
         if (flat_only) {
             r->state[v] = SIMPLIFY_DIRTY;
+            r->need[v] = 0;
             return 0;
         }
         measure_pairs(&around);
@@ -451,6 +452,16 @@ static void find_bent(simplify_region *r)
         }
 }
 
+/* Whether a vertex is to be looked at. What it was found to need still tells when its ring has changed: errors only
+ * grow, so that to look again before the limit gets there seldom helps, and takes a fourth of the time. What no error
+ * was found to allow is looked at again. */
+static int is_due(const simplify_region *r, size_t v, double limit)
+{
+    const int dirty = r->state[v] == SIMPLIFY_DIRTY;
+    if (r->state[v] && !dirty) return 0;
+    return (double)r->need[v] <= limit || (dirty && isinf(r->need[v]));
+}
+
 void swarf_simplify_region(simplify_region *r, double limit, int first)
 {
     const size_t far_apart = stride_of(r->vertex_count);
@@ -458,11 +469,11 @@ void swarf_simplify_region(simplify_region *r, double limit, int first)
     if (first) find_bent(r);
     for (size_t step = first ? 0 : 4; step < sizeof steps / sizeof *steps; step++) {
         const double at = limit * steps[step];
-        const size_t stride = step == 0 ? far_apart : 1;
+        const size_t stride = step == 0 ? far_apart : 1, back = stride - r->vertex_count; /* modulo 2^n */
         for (int round = 0, removed = 1; round < ROUNDS && removed; round++) {
             removed = 0;
-            for (size_t i = 0, v = 0; i < r->vertex_count; i++, v = (v + stride) % r->vertex_count) {
-                if (r->state[v] != SIMPLIFY_DIRTY && (r->state[v] || !((double)r->need[v] <= at))) continue;
+            for (size_t i = 0, v = 0; i < r->vertex_count; i++, v += v + stride < r->vertex_count ? stride : back) {
+                if (!is_due(r, v, at)) continue;
                 if (r->head[v] == SWARF_NO_VERTEX) continue;
                 r->state[v] = 0;
                 removed |= remove_vertex(r, (uint32_t)v, at, step == 0);
