@@ -43,11 +43,14 @@ const char stock_placed_doc[] =
     "placed($self, placement, *, voxel=None, surface=None, moves=None, memory_limit=0, progress=None)\n--\n\n"
     "The stock turned and moved, as a new Stock: ``placement`` is three rows of rotation and shift (mm), (3, 4). "
     "Quarter\n"
-    "turns with any shift keep every voxel. Any other turn, or another ``voxel`` (mm), goes by the mesh: without loss "
-    "to\n"
-    "speak of with the Surface of which the stock has seen the first ``moves`` (None: all), else edges are good to "
-    "half a\n"
-    "voxel. ValueError: not a rotation; GeometryError: nothing is left of the stock.";
+    "turns with any shift keep every voxel. Any other turn, or another ``voxel`` (mm), goes by the mesh with the "
+    "Surface "
+    "of\n"
+    "which the stock has seen the first ``moves`` (None: all), without loss to speak of. Else new voxels are made from "
+    "the\n"
+    "old ones: edges move by less than a tenth of a voxel, corners by up to 0.3; edges too where voxels "
+    "become\n"
+    "larger. ValueError: not a rotation; GeometryError: nothing is left of the stock.";
 
 PyObject *stock_placed(PyObject *self, PyObject *args, PyObject *keywords)
 {

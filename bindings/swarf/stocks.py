@@ -16,9 +16,9 @@ from .progress import Report, share
 #: Voxels along the longest edge of the stock where nobody says how fine: fast on any machine, and fine enough to see.
 DEFAULT_RESOLUTION = 512
 
-#: What voxels may be off after other than quarter turns (Stock.placed()), in voxels: with the exact surface of what was
-#: cut, and from voxels alone, which do not tell where within a voxel an edge is.
-RESAMPLED_EXACT, RESAMPLED_FIELD = 0.02, 0.5
+#: What edges may be off after other than quarter turns (Stock.placed()), in voxels: with the exact surface of what was
+#: cut, and from voxels alone.
+RESAMPLED_EXACT, RESAMPLED_FIELD = 0.02, 0.1
 
 #: Set-ups in a row, so that a description that holds itself ends.
 MOST_SET_UPS = 100

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* A stock in its next set-up. Quarter turns move voxels and lose nothing. Any other turn, and another voxel size, goes
- * by the mesh: its vertices are turned, and the new voxels get their exact distance to it, so that edges stay edges.
- * Interpolating the old voxels would round them: half way between four voxels round an edge, trilinear values are a
- * quarter of a voxel off. */
+ * by the mesh where the exact surface is known: its vertices are turned, and the new voxels get their exact distance to
+ * it, so that edges stay edges. Else new voxels are made from the old ones, but for larger ones, whose band is wider
+ * than what the old ones know. */
 #include "base/parallel.h"
 #include "base/placement.h"
 #include "base/status.h"
 #include "mesh/mesh.h"
+#include "stock/resample.h"
 #include "stock/turn.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 /* Vertices are left out up to this part of a voxel: as much as the mesh itself is off, and far fewer triangles. The
- * field alone does not know edges to more than half a voxel, so that it may cost faces a little more. */
+ * mesh of the field alone does not know edges to more than half a voxel, so that it may cost faces a little more. */
 static const double mesh_error = 0.01, field_error = 0.04;
 
 swarf_place_options swarf_place_options_default(void)
@@ -98,8 +99,13 @@ swarf_status swarf_stock_place(swarf_stock *stock, const swarf_placement *placem
     SWARF_REQUIRE(isfinite(voxel) && voxel > 0, "stock: voxel size %g mm is not a positive number", voxel);
     int axis[3], sign[3];
     const int kept = swarf_placement_quarters(placement, axis, sign) && fabs(voxel - own) <= 1e-9 * own;
-    SWARF_TRY(kept ? swarf_stock_turn(stock, placement, options->memory_limit, progress, out)
-                   : place_by_mesh(stock, placement, voxel, options, progress, out));
+    const int by_mesh = options->surface || voxel > own * (1 + 1e-9);
+    swarf_stock_options made = swarf_stock_options_default();
+    made.voxel_mm = voxel;
+    made.memory_limit = options->memory_limit;
+    SWARF_TRY(kept      ? swarf_stock_turn(stock, placement, options->memory_limit, progress, out)
+              : by_mesh ? place_by_mesh(stock, placement, voxel, options, progress, out)
+                        : swarf_stock_resample(stock, placement, &made, progress, out));
     if (lossless) *lossless = kept;
     return SWARF_OK;
 }

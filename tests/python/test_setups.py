@@ -178,7 +178,7 @@ def test_command_line(tmp_path, capsys):
     status, errors = run(capsys, bottom, "--stock", tmp_path / "top.vdb", "--turn", "x180,z30,top=0", *common[:2],
                          "--report", tmp_path / "turned.json")
     assert status == 0 and "off by 0.5 voxels at most" in errors
-    assert json.loads((tmp_path / "turned.json").read_text())["resampled_voxels"] == 0.5
+    assert json.loads((tmp_path / "turned.json").read_text())["resampled_voxels"] == 0.1
     assert report["resampled_voxels"] == 0
 
 
