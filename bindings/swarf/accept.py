@@ -20,7 +20,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Optional, Sequence
 
-from .files import read_json
+from .files import is_number, read_json
 
 KEYS = ("reason", "kind", "operation", "line", "text", "place", "within", "most", "tolerance", "allowance")
 
@@ -59,10 +59,6 @@ class Acceptance:
                      or (finding.allowance is not None and abs(finding.allowance - self.allowance) <= SAME)))
 
 
-def _number(value: Any) -> bool:
-    return type(value) in (int, float) and abs(value) < 1e15  # neither NaN nor more than a float can be
-
-
 def make(entry: Any, where: str) -> Acceptance:
     """An Acceptance of an entry of a file. ValueError begins with ``where``."""
     if not isinstance(entry, dict) or not set(entry) <= set(KEYS):
@@ -77,14 +73,14 @@ def make(entry: Any, where: str) -> Acceptance:
     if type(entry.get("line", 0)) is not int:
         raise ValueError(f"{where}: line: a whole number is wanted")
     place = entry.get("place")
-    if "place" in entry and not (isinstance(place, (list, tuple)) and len(place) == 3 and all(map(_number, place))):
+    if "place" in entry and not (isinstance(place, (list, tuple)) and len(place) == 3 and all(map(is_number, place))):
         raise ValueError(f"{where}: place: three numbers in mm are wanted")
     for key in ("within", "most"):
-        if key in entry and not (_number(entry[key]) and entry[key] >= 0):
+        if key in entry and not (is_number(entry[key]) and entry[key] >= 0):
             raise ValueError(f"{where}: {key}: a number of 0 or more is wanted")
-    if "tolerance" in entry and not (_number(entry["tolerance"]) and entry["tolerance"] > 0):
+    if "tolerance" in entry and not (is_number(entry["tolerance"]) and entry["tolerance"] > 0):
         raise ValueError(f"{where}: tolerance: a number above 0 is wanted")
-    if "allowance" in entry and not _number(entry["allowance"]):
+    if "allowance" in entry and not is_number(entry["allowance"]):
         raise ValueError(f"{where}: allowance: a number is wanted")
     words: dict[str, Any] = {**entry, "place": None if place is None else tuple(place)}
     return Acceptance(**words)

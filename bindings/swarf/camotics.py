@@ -6,8 +6,8 @@ import math
 import os
 from typing import Any, Callable, Optional
 
-from ._native import Cutter, FormatError, Program
-from .files import read_json
+from ._native import Cutter, Error, FormatError, Program
+from .files import is_number, read_json
 from .job import Job
 
 #: (r, z, bulge) nodes of a tool of radius r and length l; snub is the radius of a snub nose's tip.
@@ -31,7 +31,7 @@ def _nodes(shape: str, r: float, length: float, snub: float) -> list[tuple[float
 
 def _number(table: dict[str, Any], key: str, scale: float) -> float:
     value: Any = table.get(key)
-    if type(value) not in (int, float) or not (math.isfinite(value) and value > 0):
+    if not (is_number(value) and value > 0):
         raise ValueError(f"{key}: {value!r} is no positive length")
     return float(value) * scale
 
@@ -50,9 +50,36 @@ def _stock(project: dict[str, Any]) -> Optional[dict[str, Any]]:
     bounds = None if workpiece.get("automatic") else workpiece.get("bounds")
     if bounds is None:
         return None
+    for key in ("min", "max"):
+        corner = bounds[key]
+        if not (isinstance(corner, list) and len(corner) == 3 and all(map(is_number, corner))):
+            raise ValueError(f"workpiece: {key}: {corner!r}: three numbers are wanted")
     # the bounds of a workpiece are in mm whatever the units of the project
-    lo, hi = (tuple(float(value) for value in bounds[key]) for key in ("min", "max"))
-    return {"kind": "box", "lo": lo, "hi": hi}
+    return {"kind": "box", "lo": tuple(map(float, bounds["min"])), "hi": tuple(map(float, bounds["max"]))}
+
+
+def _source(project: dict[str, Any], path: str) -> str:
+    """The file of the project's program."""
+    files = project["files"]
+    if not (isinstance(files, list) and all(isinstance(name, str) for name in files)):
+        raise ValueError(f"files: {files!r}: a list of names is wanted")
+    if len(files) != 1:
+        raise ValueError(f"it has {len(files)} programs; one can be read")
+    return os.path.join(os.path.dirname(path), files[0])
+
+
+def _tools(project: dict[str, Any]) -> dict[int, Cutter]:
+    found = {}
+    for number, tool in project.get("tools", {}).items():
+        if not number.isdecimal():
+            raise ValueError(f"tools: {number!r} is no number of a tool")
+        if not isinstance(tool, dict):
+            raise ValueError(f"tool {number}: {tool!r}: an object is wanted")
+        try:
+            found[int(number)] = cutter(tool)
+        except (ValueError, Error) as error:
+            raise ValueError(f"tool {number}: {error}") from None
+    return found
 
 
 def read(
@@ -66,11 +93,7 @@ def read(
     try:
         if not isinstance(project, dict):
             raise ValueError("an object is wanted")
-        files = project["files"]
-        if len(files) != 1:
-            raise ValueError(f"it has {len(files)} programs; one can be read")
-        source = os.path.join(os.path.dirname(path), files[0])
-        tools = {int(number): cutter(tool) for number, tool in project.get("tools", {}).items()}
+        source, tools = _source(project, path), _tools(project)
         names = {int(number): str(tool.get("description", "")) for number, tool in project.get("tools", {}).items()}
         stock = _stock(project)
     except KeyError as error:

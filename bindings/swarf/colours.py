@@ -120,17 +120,22 @@ def _scale(part: float) -> RGB:
     return r, g, b
 
 
+def check(kind: str, job: Any) -> None:
+    """ValueError unless it is one of KINDS, and the job has the design that it may need."""
+    if kind not in KINDS:
+        raise ValueError(f"colours {kind!r}: wanted {', '.join(KINDS)}")
+    if kind == "deviation" and job.design is None:
+        raise ValueError(f"{job.name}: colours by deviation need a design, and the job has none")
+
+
 def make(kind: str, mesh: Mesh, surface: Optional[Surface], job: Any, tolerance: float = 0.05,
          progress: Report = None, *, allowance: float = 0.0) -> list[RGB]:
     """Colours of one of KINDS of the mesh of a simulated job. ValueError where what it needs is missing; Cancelled."""
+    check(kind, job)
     if kind == "operation":
         if surface is None:
             raise ValueError("colours by operation need the exact surface")
         return by_operation(mesh, surface, job, progress=progress)
     if kind == "deviation":
-        if job.design is None:
-            raise ValueError(f"{job.name}: colours by deviation need a design, and the job has none")
         return by_deviation(mesh, job.design, tolerance, progress, allowance=allowance)
-    if kind == "thickness":
-        return by_thickness(mesh, progress=progress)
-    raise ValueError(f"colours {kind!r}: wanted {', '.join(KINDS)}")
+    return by_thickness(mesh, progress=progress)

@@ -50,12 +50,6 @@ def one_line(text: object) -> str:
     return " ".join(str(text).split())
 
 
-def check_suffix(path: Optional[str], what: str, suffix: str) -> None:
-    """ValueError unless a path (None: not given) ends in ``suffix``; ``what`` is e.g. "picture"."""
-    if path is not None and os.path.splitext(path)[1].lower() != suffix:
-        raise ValueError(f"{path}: unknown suffix; a {what} is {suffix}")
-
-
 def check_writable(path: str) -> None:
     """OSError unless a file can be put there; leaves nothing behind."""
     if os.path.exists(path) and not os.path.isfile(path):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Text files that are whole or not there, JSON files that are read."""
+"""Text files that are whole or not there, JSON files that are read, suffixes."""
 from __future__ import annotations
 
 import json
 import os
 import tempfile
-from typing import Any
+from typing import Any, Optional
 
 
 def read_json(path: str) -> Any:
@@ -20,6 +20,17 @@ def read_json(path: str) -> Any:
         return json.loads(text)
     except (ValueError, RecursionError) as error:  # JSONDecodeError, what is no UTF-8, what is nested too deep
         raise ValueError(f"{path}: is no JSON: {error}") from None
+
+
+def check_suffix(path: Optional[str], what: str, suffix: str) -> None:
+    """ValueError unless a path (None: not given) ends in ``suffix``; ``what`` is e.g. "picture"."""
+    if path is not None and os.path.splitext(path)[1].lower() != suffix:
+        raise ValueError(f"{path}: unknown suffix; a {what} is {suffix}")
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value of a JSON file is a number, neither NaN nor more than lengths and speeds can be."""
+    return type(value) in (int, float) and abs(value) < 1e15
 
 
 def write_text(text: str, path: str) -> None:

@@ -37,7 +37,11 @@ MOST_SIDEWAYS = 180.5
 
 def check_limits(limits: Limits, what: str = "limits") -> None:
     """ValueError for kinds that do not exist and numbers that are not above 0."""
+    if not isinstance(limits, Mapping):
+        raise ValueError(f"{what}: wanted {{tool: {{kind: number}}}}")
     for tool, entries in limits.items():
+        if tool is not None and type(tool) is not int:
+            raise ValueError(f"{what}: {tool!r} is no number of a tool, nor None for all")
         of = what if tool is None else f"{what} of tool {tool}"
         if not isinstance(entries, Mapping):
             raise ValueError(f"{of}: wanted {{kind: number}} with {', '.join(KINDS)}")

@@ -104,6 +104,8 @@ Placement = Union[Turn, Rows]
 
 def rows_of(placement: Placement, box: Callable[[], Box]) -> Rows:
     """A placement as rows; the box of what is placed is asked for where that matters."""
+    if isinstance(placement, str):
+        raise ValueError(f"placement {placement!r}: wanted rows, or the Turn that swarf.placement.parse() makes of it")
     return placement.rows(box()) if isinstance(placement, Turn) else placement
 
 

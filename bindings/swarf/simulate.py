@@ -9,6 +9,7 @@ from typing import Any, Callable, Optional, Sequence
 from . import colours, loose, solids
 from ._native import Camera, Comparison, Contour, Mesh, Scene, Simulation, Stock, Surface, compare_volume
 from .aliases import View
+from .files import check_suffix
 from .job import Job
 from .parts import largest
 from .progress import Stages
@@ -92,6 +93,13 @@ def simulate(
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")
     suffixes = {output_suffix(path) for path in outputs}
+    check_suffix(picture, "picture", ".png")
+    if picture is not None:
+        if min(picture_size) < 1:
+            raise ValueError(f"picture of {picture_size[0]} x {picture_size[1]} pixels: 1 or more each way are wanted")
+        Camera.view(view, None, picture_size[0] / picture_size[1])  # ValueError, before the long work
+    if colour is not None:
+        colours.check(colour, job)
     meshed = mesh or not suffixes.isdisjoint(MESH_SUFFIXES)
     stages = Stages(progress)
     first = stages.run("stock", lambda report: make_first(

@@ -45,8 +45,24 @@ class First:
         return self.before.next(self.placement, program, tools, progress=progress)
 
 
+#: What descriptions have to tell, by their kind.
+NEEDS = {"box": ("lo", "hi"), "cylinder": ("base", "axis", "radius"), "mesh": ("mesh",), "vdb": ("path",),
+         "result": ("job",)}
+
+
+def _kind_of(description: dict[str, Any]) -> str:
+    """The kind of a stock; ValueError where it is not known or does not tell what it has to."""
+    kind: str = description.get("kind", "")
+    if kind not in NEEDS:
+        raise ValueError(f"stock of kind {kind!r} is not known: {', '.join(NEEDS)}")
+    missing = [key for key in NEEDS[kind] if key not in description]
+    if missing:
+        raise ValueError(f"stock of kind {kind!r} without {missing[0]!r}; it needs {', '.join(NEEDS[kind])}")
+    return kind
+
+
 def _bare_box(description: dict[str, Any]) -> Box:
-    kind = description["kind"]
+    kind = _kind_of(description)
     if kind == "box":
         return description["lo"], description["hi"]
     if kind == "mesh":
@@ -182,15 +198,13 @@ def _make(description: Optional[dict[str, Any]], voxel: Optional[float], resolut
         raise ValueError("no stock: the job does not say what is being milled")
     if depth > MOST_SET_UPS:
         raise ValueError(f"the stock is what is left after more than {MOST_SET_UPS} set-ups, or after itself")
-    kind = description["kind"]
+    kind = _kind_of(description)
     if kind == "vdb":
         return _read_file(description, voxel, resolution, progress)
     if kind == "result":
         if voxel is None and "path" not in description:
             voxel = voxel_of(description, DEFAULT_RESOLUTION if resolution is None else resolution)
         return _play_before(description, voxel, depth, play, progress)
-    if kind not in ("box", "cylinder", "mesh"):
-        raise ValueError(f"stock of kind {kind!r} is not known: box, cylinder, mesh, vdb, result")
     if voxel is None:
         voxel = voxel_of(description, DEFAULT_RESOLUTION if resolution is None else resolution)
     return First(_make_shape(description, voxel, progress))

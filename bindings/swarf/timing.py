@@ -12,7 +12,7 @@ import math
 from typing import Any, Optional
 
 from ._native import Program
-from .files import read_json
+from .files import is_number, read_json
 from .records import MOVE, SECTION, section_and_kind
 
 KEYS = ("rapid_mm_min", "feed_mm_min", "acceleration_mm_s2", "junction_mm", "rotary_deg_min", "tool_change_s")
@@ -30,7 +30,7 @@ def read_machine(path: str) -> dict[str, Any]:
         if key not in KEYS:
             raise ValueError(f"{path}: {key!r} is not known; {', '.join(KEYS)} are")
         values = value if isinstance(value, list) and key in BY_AXIS and len(value) == 3 else [value]
-        if not all(type(number) in (int, float) and abs(number) < 1e15 for number in values):
+        if not all(map(is_number, values)):
             three = ", or three for X, Y, Z" if key in BY_AXIS else ""
             raise ValueError(f"{path}: {key}: {value!r} is no number{three}")
     try:

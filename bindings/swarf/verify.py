@@ -2,6 +2,7 @@
 """Is the part right? A job is simulated and what is left of its stock held against the design."""
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Optional, Sequence
@@ -142,8 +143,12 @@ def verify(
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to verify")
     tolerances = (tolerance if excess is None else excess, tolerance if gouge is None else gouge)
-    limits = limits or {}
+    for side in tolerances:
+        check_tolerance(side)
+    limits = {} if limits is None else limits
     loading.check_limits(limits)
+    if not all(isinstance(item, Acceptance) for item in accept):
+        raise TypeError("accept: Acceptances are wanted, as swarf.accept.read() and make() give them")
     stages = Stages(progress)
     solid = stages.run("design", lambda report: _solid(mesh, "design", report))
     fixtures = [*job.fixtures, *fixtures]
@@ -171,6 +176,12 @@ def verify(
     made.findings = settle(found, [*job.accepted, *accept])
     stages.end()
     return made
+
+
+def check_tolerance(value: float) -> None:
+    """ValueError unless it is a length above 0."""
+    if not (math.isfinite(value) and value > 0):
+        raise ValueError(f"tolerance {value:g}: wanted a number above 0")
 
 
 def _design_of(job: Job, given: Optional[Mesh]) -> Mesh:

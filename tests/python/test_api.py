@@ -222,3 +222,45 @@ def test_job_simulate(slot, cutter, tmp_path):
     assert {"stock", "cut", "loose", "compare", "mesh", "write", "picture", "total"} == set(result.seconds)
     assert {path.name for path in tmp_path.iterdir()} == {"a.stl", "a.vdb", "a.png"}
     assert all(0 <= fraction <= 1 for _, fraction in stages)
+
+
+def bare_job(stock=None):
+    return swarf.Job("bare", make_slot(), {1: swarf.Cutter("flat:d=6,l=20")},
+                     stock={"kind": "box", "lo": LO, "hi": HI} if stock is None else stock)
+
+
+@pytest.mark.parametrize("words, says", [
+    ({"view": "iso", "picture": "a.png"}, "'iso' is none of isometric, top"),
+    ({"picture": "a.jpg"}, "a picture is .png"), ({"picture": "a.png", "picture_size": (5, 0)}, "picture of 5 x 0"),
+    ({"colour": "red"}, "wanted operation, deviation"), ({"colour": "deviation"}, "need a design"),
+    ({"outputs": ["a.foo"]}, "an output is .stl"),
+])
+def test_what_cannot_be_made_is_refused_before_the_work(words, says):
+    told = []
+    with pytest.raises(ValueError, match=says):
+        swarf.simulate(bare_job(), voxel=1.0, progress=lambda *stage: told.append(stage), **words)
+    assert told == []
+
+
+@pytest.mark.parametrize("words, says", [
+    ({"tolerance": -1}, "tolerance -1: wanted a number above 0"), ({"gouge": float("nan")}, "tolerance nan"),
+    ({"limits": {"1": {"chip": 1}}}, "'1' is no number of a tool"), ({"limits": [1]}, "limits: wanted {tool"),
+    ({"accept": [{"reason": "x"}]}, "Acceptances are wanted"),
+])
+def test_what_cannot_be_verified_is_refused_before_the_work(words, says):
+    told = []
+    with pytest.raises((ValueError, TypeError), match=says):
+        swarf.verify(bare_job(), swarf.Mesh.from_stock(swarf.Stock.box(LO, HI, 2.0)), voxel=1.0,
+                     progress=lambda *stage: told.append(stage), **words)
+    assert told == []
+
+
+@pytest.mark.parametrize("stock, says", [
+    ({}, "kind '' is not known: box, cylinder, mesh, vdb, result"), ({"kind": "ball"}, "kind 'ball' is not known"),
+    ({"kind": "box", "lo": LO}, "kind 'box' without 'hi'; it needs lo, hi"), ({"kind": "mesh"}, "without 'mesh'"),
+    ({"kind": "vdb"}, "without 'path'"), ({"kind": "result"}, "without 'job'"),
+    ({"kind": "box", "lo": LO, "hi": HI, "placement": "x180"}, "swarf.placement.parse"),
+])
+def test_stocks_that_are_not_told_rightly(stock, says):
+    with pytest.raises(ValueError, match=says):
+        swarf.simulate(bare_job(stock=stock), voxel=1.0)

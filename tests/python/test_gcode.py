@@ -204,12 +204,19 @@ def test_camotics_tools(changes, volume):
         (json.dumps(project(shape="cube")), "'cube' is not known"),
         (json.dumps(project(diameter=-1)), "diameter: -1 is no positive length"),
         (json.dumps({**project(), "files": ["a", "b"]}), "2 programs"),
+        (json.dumps({**project(), "files": "slot.nc"}), "files: 'slot.nc': a list of names"),
+        (json.dumps({**project(), "files": [3]}), "files: .3.: a list of names"),
+        (json.dumps({**project(), "tools": {"x": {}}}), "'x' is no number of a tool"),
+        (json.dumps({**project(), "tools": {"1": 3}}), "tool 1: 3: an object"),
+        (json.dumps({**project(), "workpiece": {"bounds": {"min": [0, 0], "max": [1, 1, 1]}}}), "min: .0, 0.: three"),
+        (json.dumps({**project(), "workpiece": {"bounds": {"min": [0, 0, 0], "max": [1, 1, None]}}}), "max: .*three"),
+        (json.dumps({**project(), "workpiece": {"bounds": {"min": [0, 0, 0]}}}), "no 'max'"),
     ],
 )
 def test_impossible_projects(tmp_path, text, says):
     path = tmp_path / "bad.camotics"
     path.write_text(text)
-    with pytest.raises(swarf.FormatError, match=says):
+    with pytest.raises(swarf.FormatError, match=f"^{re.escape(str(path))}: .*{says}"):
         readers.read(str(path))
 
 

@@ -9,10 +9,11 @@ import time
 from typing import Any
 
 from .. import colours, inputs, report, timing
-from ..console import DONE, FINDINGS, check_outputs, check_suffix, one_line, say
+from ..console import DONE, FINDINGS, check_outputs, one_line, say
+from ..files import check_suffix
 from ..progress import Bar
 from ..simulate import output_suffix, simulate
-from ..verify import uncut_text
+from ..verify import check_tolerance, uncut_text
 
 
 def add(subparsers: Any) -> None:
@@ -48,8 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_suffix(arguments.report, "report", ".json")
     outputs, sources = (*arguments.output, arguments.picture, arguments.report), inputs.files_read(arguments)
     check_outputs(outputs, (*sources, arguments.machine))
-    if not (math.isfinite(arguments.tolerance) and arguments.tolerance > 0):
-        raise ValueError(f"tolerance {arguments.tolerance:g}: wanted a number above 0")
+    check_tolerance(arguments.tolerance)
     if not math.isfinite(arguments.allowance):
         raise ValueError(f"allowance {arguments.allowance:g}: wanted a number")
     machine = None if arguments.machine is None else timing.read_machine(arguments.machine)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import os
 import sys
 import time
@@ -14,7 +13,7 @@ from ..console import DONE, FINDINGS, check_outputs, one_line, say
 from ..files import write_text
 from ..job import Job, number_of
 from ..progress import Bar
-from ..verify import CAD_SUFFIXES, DESIGN_SUFFIXES, Verdict, read_design, verify
+from ..verify import CAD_SUFFIXES, DESIGN_SUFFIXES, Verdict, check_tolerance, read_design, verify
 
 REPORT_SUFFIXES = (".html", ".json", ".pdf")
 
@@ -97,8 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
                          *arguments.limit)
     accepted = [] if arguments.accept is None else accept.read(arguments.accept)
     tightest = min(arguments.tolerance if side is None else side for side in (arguments.excess, arguments.gouge))
-    if not (math.isfinite(tightest) and tightest > 0):
-        raise ValueError(f"tolerance {tightest:g}: wanted a number above 0")
+    check_tolerance(tightest)
 
     with Bar() as bar:
         started = time.perf_counter()
