@@ -3,9 +3,13 @@
 import ast
 import inspect
 import pathlib
+import re
+from typing import get_args
+
+import pytest
 
 import swarf
-from swarf import _native
+from swarf import _native, aliases
 
 STUB = ast.parse((pathlib.Path(_native.__file__).parent / "_native.pyi").read_text(encoding="utf-8"))
 CLASSES = {node.name: node for node in STUB.body if isinstance(node, ast.ClassDef) and not node.name.startswith("_")}
@@ -93,3 +97,22 @@ def test_the_package_offers_all_of_it():
     assert public(swarf.__all__) >= public([*CLASSES, *FUNCTIONS])
     for name in swarf.__all__:
         assert hasattr(swarf, name)
+
+
+@pytest.mark.parametrize("words, call", [
+    (aliases.View, lambda word: swarf.Camera.view(word, None)),
+    (aliases.Dialect, lambda word: swarf.Program.parse_gcode("", dialect=word)),
+    (aliases.PartKind, lambda word: swarf.Cutter("flat:d=6,l=20").radius(word)),
+    (aliases.Colouring, lambda word: render(colouring=word)),
+    (aliases.Buffers, lambda word: render(buffers=[word])),
+])
+def test_words_are_those_that_the_library_knows(words, call):
+    with pytest.raises(ValueError) as error:
+        call("no such word")
+    known = re.search("is none of (.*)$", str(error.value)).group(1)
+    assert set(get_args(words)) == set(known.split(", "))
+
+
+def render(**words):
+    stock = swarf.Stock.box((0, 0, 0), (1, 1, 1), 0.5)
+    return swarf.Scene(stock).render(swarf.Camera.view("top", stock.bounding_box()), 4, 4, **words)
