@@ -155,7 +155,8 @@ enum {
     SWARF_WARNED_INPUT = 4,
     SWARF_WARNED_SURFACE = 8,
     SWARF_WARNED_LENGTH = 16,
-    SWARF_WARNED_SYSTEM = 32
+    SWARF_WARNED_SYSTEM = 32,
+    SWARF_WARNED_UNKNOWN = 64
 };
 
 /** State at the start of a program. The machine keeps `program` and `notes`, copies the tool table. */

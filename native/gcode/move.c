@@ -105,6 +105,21 @@ static swarf_status make_arc(const swarf_machine *machine, const swarf_word *wor
     return SWARF_OK;
 }
 
+/** A feed that is not simulated, since nothing tells where it begins or ends; said of the first. */
+static swarf_status warn_unknown(swarf_machine *machine, const swarf_word *word, const double end[3])
+{
+    if (machine->warned & SWARF_WARNED_UNKNOWN || (all_known(machine->last_tip) && all_known(end))) return SWARF_OK;
+    machine->warned |= SWARF_WARNED_UNKNOWN;
+    const double *const unknown = all_known(end) ? machine->last_tip : end;
+    char axes[4] = "";
+    for (int k = 0, n = 0; k < 3; k++)
+        if (isnan(unknown[k])) axes[n++] = "XYZ"[k];
+    return swarf_gcode_warn(machine, word,
+                            "feeds %s a place whose %s is not known: what it cuts is not simulated; command it before, "
+                            "or tell where the tool starts",
+                            all_known(end) ? "from" : "to", axes);
+}
+
 swarf_status swarf_machine_emit(swarf_machine *machine, const swarf_word *word, const swarf_step *step)
 {
     SWARF_TRY(settle_section(machine, &step->section));
@@ -125,6 +140,7 @@ swarf_status swarf_machine_emit(swarf_machine *machine, const swarf_word *word, 
         SWARF_TRY(swarf_program_set_axes(machine->program, step->end + 3));
         memcpy(machine->axes_now, step->end + 3, sizeof machine->axes_now);
     }
+    if (step->kind == SWARF_MOVE_FEED) SWARF_TRY(warn_unknown(machine, word, end));
     return push(machine, (swarf_move_kind)step->kind, end, turning ? &arc : NULL, step->value, step->line);
 }
 

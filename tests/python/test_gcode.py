@@ -110,6 +110,15 @@ def test_swarf_check(file, tmp_path, capsys):
     assert "wanted X,Y,Z" in capsys.readouterr().err
 
 
+def test_feeds_whose_place_is_not_known_are_said_once():
+    to, start = "feeds to a place whose Y is not known", "feeds from a place whose XYZ is not known"
+    for text, said in (("G0 X0 Z5\nG1 X20 F3\nX30\nM2\n", [(2, to)]), ("G1 X0 Y0 Z0 F3\nX20\nM2\n", [(1, start)]),
+                       ("G0 Z5\nX0\nG0 Y0\nG1 X20 F3\nM2\n", [])):
+        notes = swarf.Program.parse_gcode(text).notes
+        assert [(line, said) for (_, _, line, _, told), (_, said) in zip(notes, said) if said in told] == said, text
+        assert len(notes) == len(said) and swarf.Program.parse_gcode(text, start=(0, 0, 9)).notes == ()
+
+
 def test_note_text_is_one_line():
     assert gcode.note_text(("error", "a", 1, 2, "b\nc")) == "a:1:2: error: b c"
 
