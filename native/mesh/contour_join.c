@@ -12,7 +12,8 @@ static const double least_height = 1e-3;
 
 /* Corner of a quadrilateral: the vertex of the cell `back` of the edge's voxel. */
 typedef struct corner {
-    double at[3]; /* in voxels from the edge's voxel */
+    double at[3]; /* in voxels from the edge's voxel, set by measure_corners() */
+    const float *xyz;
     uint32_t number;
     int calm, tiled;
 } corner;
@@ -37,8 +38,7 @@ static int find_corner(const contour *work, const contour_block *near, const int
     }
     out->number = (uint32_t)(block->vertex_first + left);
     out->calm = (int)(block->calm_mask[x] >> bit & 1);
-    for (int k = 0; k < 3; k++)
-        out->at[k] = ((double)block->vertices[local].xyz[k] - work->layout->origin[k]) / work->layout->voxel - voxel[k];
+    out->xyz = block->vertices[local].xyz;
     return 1;
 }
 
@@ -95,6 +95,13 @@ static int find_corners(const contour *work, const contour_block *near, const in
     return found == 4;
 }
 
+static void measure_corners(const contour *work, const int32_t voxel[3], corner q[4])
+{
+    const swarf_tree_layout *layout = work->layout;
+    for (int c = 0; c < 4; c++)
+        for (int k = 0; k < 3; k++) q[c].at[k] = ((double)q[c].xyz[k] - layout->origin[k]) / layout->voxel - voxel[k];
+}
+
 /* The lesser cosine of the two triangles on a diagonal to the normal, which points along the axis. */
 static double least_facing(const corner q[4], int first, const double normal[3])
 {
@@ -140,6 +147,7 @@ static int is_folded(const contour *work, const contour_block *near, const int32
     double normal[3];
     const contour_crossing *crossing = swarf_contour_crossing(work, near, voxel, axis);
     if (!crossing || !find_corners(work, near, voxel, axis, q)) return 0;
+    measure_corners(work, voxel, q);
     const double along = crossing->normal[axis] < 0 ? -1 : 1;
     for (int k = 0; k < 3; k++) normal[k] = along * (double)crossing->normal[k];
     return least_facing(q, 0, normal) <= 0 && least_facing(q, 1, normal) <= 0;
@@ -200,6 +208,7 @@ swarf_status swarf_contour_join(contour *work, contour_block *block)
                     block->facet_count++;
                     continue;
                 }
+                measure_corners(work, voxel, q);
                 const int d = choose_diagonal(q, axis, outwards, crossing);
                 if (d >= 0) {
                     put_facet(next, crossing, outwards, error, q[d].number, q[d + 1].number, q[d + 2].number);
