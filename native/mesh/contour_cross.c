@@ -77,30 +77,39 @@ swarf_status swarf_contour_blocks(contour *work)
     return SWARF_OK;
 }
 
+/* The values of the leaf at a corner; NULL where there is none, all of it is then *tile. */
+static const float *find_leaf(const contour *work, const int32_t corner[3], float *tile)
+{
+    const ptrdiff_t place = place_of(work->layout, corner);
+    *tile = work->layout->background;
+    if (place < 0) return NULL;
+    const size_t node = (size_t)place / SWARF_NODE_SLOTS;
+    const unsigned slot = (unsigned)((size_t)place % SWARF_NODE_SLOTS);
+    const float *leaf = swarf_tree_leaf(work->stock->tree, node, slot);
+    if (!leaf && swarf_tree_tile_inside(work->stock->tree, node, slot)) *tile = -*tile;
+    return leaf;
+}
+
 void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values[SWARF_HALO * SWARF_HALO * SWARF_HALO])
 {
-    const swarf_tree_layout *layout = work->layout;
     /* along an axis the neighbours below, itself and above give 1, 8 and 2 voxels */
     static const int first[3] = {7, 0, 0}, count[3] = {1, 8, 2}, start[3] = {0, 1, 9};
-    for (int c = 0; c < 27; c++) {
-        const int part[3] = {c / 9, c / 3 % 3, c % 3};
-        int32_t corner[3];
-        for (int k = 0; k < 3; k++) corner[k] = ijk[k] + (part[k] - 1) * SWARF_LEAF_DIM;
-        const ptrdiff_t place = place_of(layout, corner);
-        const float *leaf = NULL;
-        float tile = layout->background;
-        if (place >= 0) {
-            const size_t node = (size_t)place / SWARF_NODE_SLOTS;
-            const unsigned slot = (unsigned)((size_t)place % SWARF_NODE_SLOTS);
-            leaf = swarf_tree_leaf(work->stock->tree, node, slot);
-            if (!leaf && swarf_tree_tile_inside(work->stock->tree, node, slot)) tile = -layout->background;
+    for (int c = 0; c < 9; c++) {
+        const int part[2] = {c / 3, c % 3};
+        const float *leaf[3];
+        float tile[3];
+        for (int k = 0; k < 3; k++) {
+            const int32_t corner[3] = {ijk[0] + (part[0] - 1) * SWARF_LEAF_DIM, ijk[1] + (part[1] - 1) * SWARF_LEAF_DIM,
+                                       ijk[2] + (k - 1) * SWARF_LEAF_DIM};
+            leaf[k] = find_leaf(work, corner, &tile[k]);
         }
         for (int x = 0; x < count[part[0]]; x++)
             for (int y = 0; y < count[part[1]]; y++) {
-                float *to =
-                    values + ((start[part[0]] + x) * SWARF_HALO + start[part[1]] + y) * SWARF_HALO + start[part[2]];
-                const int from = (first[part[0]] + x) * 64 + (first[part[1]] + y) * 8 + first[part[2]];
-                for (int z = 0; z < count[part[2]]; z++) to[z] = leaf ? leaf[from + z] : tile;
+                float *to = values + ((start[part[0]] + x) * SWARF_HALO + start[part[1]] + y) * SWARF_HALO;
+                const int from = (first[part[0]] + x) * 64 + (first[part[1]] + y) * 8;
+                to[0] = leaf[0] ? leaf[0][from + 7] : tile[0];
+                for (int z = 0; z < 8; z++) to[1 + z] = leaf[1] ? leaf[1][from + z] : tile[1];
+                for (int z = 0; z < 2; z++) to[9 + z] = leaf[2] ? leaf[2][from + z] : tile[2];
             }
     }
 }
