@@ -13,6 +13,7 @@ from ..console import DONE, FINDINGS, check_outputs, one_line, say
 from ..files import check_suffix
 from ..progress import Bar
 from ..simulate import output_suffix, simulate
+from ..stocks import RESAMPLED_FIELD
 from ..verify import check_tolerance, uncut_text
 
 
@@ -85,8 +86,9 @@ def run(arguments: argparse.Namespace) -> int:
     if cuts:
         told.append(f"warning: {cuts} pairs of triangles cut each other: the surface touches itself there")
     if result.resampled_voxels:
+        corners = ", at corners by up to 0.3" if result.resampled_voxels == RESAMPLED_FIELD else ""
         told.append(f"note: the stock was turned into new voxels, which are off by {result.resampled_voxels:g} voxels "
-                    "at most at its edges; quarter turns keep them as they are")
+                    f"at most at its edges{corners}; quarter turns keep them as they are")
     found = []
     for played, simulation in (*result.before, (job, result.simulation)):
         of = f"{played.name}: " if result.before else ""
