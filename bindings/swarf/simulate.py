@@ -16,12 +16,13 @@ from .progress import Stages
 from .stocks import DEFAULT_RESOLUTION, make_first, make_stock, stock_box, voxel_of
 
 __all__ = [
-    "DEFAULT_RESOLUTION", "MESH_ERROR_VOXELS", "MESH_SUFFIXES", "Progress", "Result", "STOCK_SUFFIXES", "make_stock",
-    "OUTPUT_SUFFIXES", "output_suffix", "simulate", "stock_box", "voxel_of",
+    "COLOURED_SUFFIXES", "DEFAULT_RESOLUTION", "MESH_ERROR_VOXELS", "MESH_SUFFIXES", "OUTPUT_SUFFIXES", "Progress",
+    "Result", "STOCK_SUFFIXES", "check_coloured", "make_stock", "output_suffix", "simulate", "stock_box", "voxel_of",
 ]
 
 #: What an output file can be, by its suffix.
-MESH_SUFFIXES = (".stl", ".ply", ".obj", ".3mf", ".glb")
+COLOURED_SUFFIXES = (".ply", ".obj", ".3mf", ".glb")
+MESH_SUFFIXES = (".stl", *COLOURED_SUFFIXES)
 STOCK_SUFFIXES = (".vdb",)
 OUTPUT_SUFFIXES = MESH_SUFFIXES + STOCK_SUFFIXES + solids.SUFFIXES
 
@@ -187,6 +188,12 @@ def _write_solid(path: str, cut: Stock, surface: Surface, only_largest: bool, st
 def streams(paths: Sequence[str]) -> bool:
     """Whether a mesh for these files alone can be written without being in memory as a whole."""
     return len(paths) == 1 and os.path.splitext(os.fspath(paths[0]))[1].lower() == ".stl"
+
+
+def check_coloured(paths: Sequence[str], option: str) -> None:
+    """ValueError unless a file has a place for the colours that an option asks for."""
+    if not any(os.path.splitext(path)[1].lower() in COLOURED_SUFFIXES for path in paths):
+        raise ValueError(f"{option}: no --output has colours; {', '.join(COLOURED_SUFFIXES)} files do")
 
 
 def output_suffix(path: str) -> str:

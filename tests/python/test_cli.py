@@ -290,6 +290,10 @@ def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, prog
     for words, says in (
             ([*held, "--accept", str(tmp_path / "folder.json")], "folder.json: Is a directory"),
             (["simulate", str(tmp_path / "folder.camotics")], "folder.camotics: Is a directory"),
+            (["simulate", *cut, "--colours", "operation", "--output", str(tmp_path / "a.stl")],
+             "--colours: no --output has colours; .ply, .obj"),
+            (["mesh", part, "--thickness", "--output", str(tmp_path / "a.stl")],
+             "--thickness: no --output has colours"),
             (["simulate", str(tmp_path / "no.camotics")], "is no CAMotics project: it has no 'files'"),
             (["simulate", *cut, "--parameters", str(tmp_path / "no.var")], "no.var: no line of it is a parameter"),
             (["simulate", *cut, "--machine", str(tmp_path / "deep.json")], "deep.json: is no JSON: "),

@@ -13,7 +13,7 @@ from .. import _native, colours, solids
 from ..console import DONE, FINDINGS, check_outputs, say
 from ..parts import PLANE_HELP, parse_plane, pieces, thinnest
 from ..progress import Bar
-from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES, streams
+from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES, check_coloured, streams
 
 
 def add(subparsers: Any) -> None:
@@ -150,6 +150,8 @@ def run(arguments: argparse.Namespace) -> int:
     for path in arguments.output:
         if os.path.splitext(path)[1].lower() not in MESH_SUFFIXES + solids.SUFFIXES:
             raise ValueError(f"{path}: unknown suffix; a mesh is {', '.join(MESH_SUFFIXES + solids.SUFFIXES)}")
+    if arguments.thickness and not arguments.measure:
+        check_coloured(arguments.output, "--thickness")
     _native.set_threads(arguments.threads)
     check_outputs(arguments.output, [arguments.input])
     of_facets: list[str] = []

@@ -12,7 +12,7 @@ from .. import colours, inputs, report, timing
 from ..console import DONE, FINDINGS, check_outputs, one_line, say
 from ..files import check_suffix
 from ..progress import Bar
-from ..simulate import output_suffix, simulate
+from ..simulate import check_coloured, output_suffix, simulate
 from ..stocks import RESAMPLED_FIELD
 from ..verify import check_tolerance, uncut_text
 
@@ -48,6 +48,8 @@ def run(arguments: argparse.Namespace) -> int:
         output_suffix(path)
     check_suffix(arguments.picture, "picture", ".png")
     check_suffix(arguments.report, "report", ".json")
+    if arguments.colours is not None:
+        check_coloured(arguments.output, "--colours")
     outputs, sources = (*arguments.output, arguments.picture, arguments.report), inputs.files_read(arguments)
     check_outputs(outputs, (*sources, arguments.machine))
     check_tolerance(arguments.tolerance)
