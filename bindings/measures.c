@@ -42,6 +42,7 @@ static PyStructSequence_Field contour_fields[] = {
     {"error_mm", "Bound of the distance to the mesh of all vertices."},
     {"budget_met", "Whether there are no more triangles than were allowed."},
     {"unseen_mm3", "Material thinner than a voxel that the mesh has not, about."},
+    {"split_edges", "Edges of triangles that left the surface and were split."},
     {NULL, NULL},
 };
 
@@ -49,7 +50,7 @@ PyStructSequence_Desc contour_desc = {
     .name = "swarf.Contour",
     .doc = "What Mesh.from_stock() or Mesh.stream() came to.",
     .fields = contour_fields,
-    .n_in_sequence = 10,
+    .n_in_sequence = 11,
 };
 
 /** A struct sequence of `count` values, whose references it takes; NULL with an exception when one is NULL. */
@@ -206,7 +207,8 @@ PyObject *contour_tuple(module_state *state, const swarf_contour_report *r)
                                 PyLong_FromSize_t(r->sharp_vertices),     PyLong_FromSize_t(r->exact_vertices),
                                 PyLong_FromSize_t(r->parted_cells),       PyLong_FromSize_t(r->intersections_found),
                                 PyLong_FromSize_t(r->intersections_left), PyFloat_FromDouble(r->error_mm),
-                                PyBool_FromLong(r->budget_met),           PyFloat_FromDouble(r->unseen_mm3)};
+                                PyBool_FromLong(r->budget_met),           PyFloat_FromDouble(r->unseen_mm3),
+                                PyLong_FromSize_t(r->split_edges)};
     return sequence_of(state->contour, values, sizeof values / sizeof *values);
 }
 

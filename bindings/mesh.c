@@ -83,7 +83,7 @@ static PyObject *mesh_read(PyObject *type, PyObject *args, PyObject *keywords)
 }
 
 /** What meshes of a stock are made with; 0, or -1 with an exception. */
-static int read_options(const module_state *state, double error, PyObject *given, PyObject *moves,
+static int read_options(const module_state *state, double error, PyObject *given, PyObject *moves, int fine,
                         swarf_contour_options *out)
 {
     if (given != Py_None && !PyObject_TypeCheck(given, state->surface)) {
@@ -101,20 +101,22 @@ static int read_options(const module_state *state, double error, PyObject *given
     out->error_mm = error;
     out->surface = surface ? surface->handle : NULL;
     out->moves = count;
+    out->fine = fine;
     return 0;
 }
 
 static PyObject *mesh_from_stock(PyObject *type, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"stock", "error", "budget", "surface", "moves", "progress", NULL};
+    static char *names[] = {"stock", "error", "budget", "surface", "moves", "fine", "progress", NULL};
     module_state *state = state_of_type((PyTypeObject *)type);
     PyObject *stock, *surface = Py_None, *moves = Py_None, *progress = NULL;
     double error = 0;
+    int fine = 0;
     Py_ssize_t budget = 0;
     swarf_contour_options options;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$nOOO:from_stock", names, state->stock, &stock, &error,
-                                     &budget, &surface, &moves, &progress) ||
-        read_options(state, error, surface, moves, &options))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$nOOpO:from_stock", names, state->stock, &stock, &error,
+                                     &budget, &surface, &moves, &fine, &progress) ||
+        read_options(state, error, surface, moves, fine, &options))
         return NULL;
     if (budget < 0) return PyErr_Format(PyExc_ValueError, "budget: %zd is not a number of triangles", budget);
     options.triangle_budget = (size_t)budget;
@@ -147,16 +149,17 @@ static swarf_status stream_to(void *context, const char *path, const swarf_progr
 
 static PyObject *mesh_stream(PyObject *type, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"stock", "path", "error", "surface", "moves", "memory_limit", "progress", NULL};
+    static char *names[] = {"stock", "path", "error", "surface", "moves", "fine", "memory_limit", "progress", NULL};
     module_state *state = state_of_type((PyTypeObject *)type);
     PyObject *stock, *path, *surface = Py_None, *moves = Py_None, *progress = NULL;
     double error = 0;
+    int fine = 0;
     Py_ssize_t limit = 0;
     swarf_contour_options options;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O&|d$OOnO:stream", names, state->stock, &stock,
-                                     PyUnicode_FSConverter, &path, &error, &surface, &moves, &limit, &progress))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O&|d$OOpnO:stream", names, state->stock, &stock,
+                                     PyUnicode_FSConverter, &path, &error, &surface, &moves, &fine, &limit, &progress))
         return NULL;
-    int bad = read_options(state, error, surface, moves, &options);
+    int bad = read_options(state, error, surface, moves, fine, &options);
     if (!bad && limit < 0) {
         PyErr_Format(PyExc_ValueError, "memory_limit: %zd is not a number of bytes", limit);
         bad = -1;
@@ -291,15 +294,17 @@ static PyMethodDef mesh_methods[] = {
     {"read", WITH_KEYWORDS(mesh_read), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
      "read($type, path)\n--\n\nMesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."},
     {"from_stock", WITH_KEYWORDS(mesh_from_stock), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "from_stock($type, stock, error=0.0, *, budget=0, surface=None, moves=None, progress=None)\n--\n\n"
+     "from_stock($type, stock, error=0.0, *, budget=0, surface=None, moves=None, fine=False, progress=None)\n--\n\n"
      "The surface of a stock with its edges: closed, oriented outwards, no triangles that cut each other. Vertices "
      "are\n"
      "left out while the mesh stays within ``error`` mm of the full one, until at most ``budget`` triangles are left\n"
      "(0: as few as the error allows). Vertices lie exactly on the Surface of which the stock has seen the first\n"
-     "``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. What it came to is in\n"
-     "``contour``."},
+     "``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. ``fine``: triangles\n"
+     "that leave the Surface, beside edges closer to each other than a voxel, are split; that takes longer. What it\n"
+     "came to is in ``contour``."},
     {"stream", WITH_KEYWORDS(mesh_stream), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "stream($type, stock, path, error=0.0, *, surface=None, moves=None, memory_limit=0, progress=None)\n--\n\n"
+     "stream($type, stock, path, error=0.0, *, surface=None, moves=None, fine=False, memory_limit=0, progress=None)\n"
+     "--\n\n"
      "The mesh of from_stock() straight to a binary .stl file; its Contour. One that would not fit into\n"
      "``memory_limit`` (bytes; 0: 80 % of what is free now) is made and written band by band along x, with small\n"
      "triangles along the planes between them; a pipe gets the whole one however much memory that takes."},

@@ -686,13 +686,15 @@ class Mesh:
         budget: int = 0,
         surface: Optional[Surface] = None,
         moves: Optional[int] = None,
+        fine: bool = False,
         progress: Progress = None,
     ) -> Mesh:
         """The surface of a stock with its edges: closed, oriented outwards, no triangles that cut each other. Vertices
         are left out while the mesh stays within ``error`` mm of the full one, until at most ``budget`` triangles are
         left (0: as few as the error allows). Vertices lie exactly on the Surface of which the stock has seen the first
-        ``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. What it came to is in
-        ``contour``."""
+        ``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. ``fine``: triangles
+        that leave the Surface, beside edges closer to each other than a voxel, are split; that takes longer. What it
+        came to is in ``contour``."""
     @classmethod
     def stream(
         cls,
@@ -702,6 +704,7 @@ class Mesh:
         *,
         surface: Optional[Surface] = None,
         moves: Optional[int] = None,
+        fine: bool = False,
         memory_limit: int = 0,
         progress: Progress = None,
     ) -> Contour:
@@ -849,12 +852,13 @@ class Lump(
     def bounding_box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]: ...
 
 @final
-class Contour(structseq[Any], tuple[int, int, int, int, int, int, int, float, bool, float]):
+class Contour(structseq[Any], tuple[int, int, int, int, int, int, int, float, bool, float, int]):
     """What Mesh.from_stock() or Mesh.stream() came to."""
 
     __match_args__: Final = (
         "full_triangles", "triangles", "sharp_vertices", "exact_vertices", "parted_cells",
-        "intersections_found", "intersections_left", "error_mm", "budget_met", "unseen_mm3"
+        "intersections_found", "intersections_left", "error_mm", "budget_met", "unseen_mm3",
+        "split_edges"
     )
     @property
     def full_triangles(self) -> int: ...
@@ -876,6 +880,8 @@ class Contour(structseq[Any], tuple[int, int, int, int, int, int, int, float, bo
     def budget_met(self) -> bool: ...
     @property
     def unseen_mm3(self) -> float: ...
+    @property
+    def split_edges(self) -> int: ...
 
 @final
 class Comparison(structseq[Any], tuple[float, float, float, float]):

@@ -273,15 +273,19 @@ static swarf_status attempt(const stage *s, int first, found *out)
     SWARF_TRY(number_vertices(work));
     SWARF_TRY(swarf_parallel_for(work->block_count, join_one, work, first ? s->progress : NULL, 0.6, 0.7));
     SWARF_TRY(gather(work, s->facets));
-    swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
     for (size_t i = 0; first && i < work->block_count; i++)
         if (swarf_contour_is_within(work, &work->blocks[i], 0)) s->report->full_triangles += work->blocks[i].full_count;
     const int keeps = !first || work->band;
     uint8_t *marks = keeps ? mark_vertices(work, s->facets) : NULL;
     if (keeps && !marks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
-    const swarf_status status =
-        swarf_facets_simplify(s->facets, s->options->error_mm, voxel, s->options->triangle_budget, marks, s->memo,
-                              first ? s->progress : NULL, 0.7, 0.9);
+    size_t split = 0;
+    swarf_status status = SWARF_OK;
+    if (s->options->fine && work->surface) status = swarf_contour_crease(work, s->facets, &marks, &split);
+    if (first) s->report->split_edges += split;
+    swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
+    if (status == SWARF_OK)
+        status = swarf_facets_simplify(s->facets, s->options->error_mm, voxel, s->options->triangle_budget, marks,
+                                       s->memo, first ? s->progress : NULL, 0.7, 0.9);
     free(marks);
     SWARF_TRY(status);
     return find_pairs(s, first, out);
@@ -466,6 +470,8 @@ swarf_status swarf_contour_check(const swarf_contour_options *options)
     SWARF_REQUIRE(options->error_mm > 0 || !options->triangle_budget,
                   "mesh: a budget of %zu triangles needs an error (mm) that may be spent on it",
                   options->triangle_budget);
+    SWARF_REQUIRE(options->fine == 0 || options->fine == 1, "mesh: fine is %d, which is neither 0 nor 1",
+                  options->fine);
     return SWARF_OK;
 }
 

@@ -50,17 +50,16 @@ static void check_mesh(const char *what, const swarf_mesh *mesh, double field_mm
     fflush(stdout);
 }
 
-enum { KINDS = 4 };
+enum { KINDS = 6 };
 
-/* Error (in voxels) and surface of each kind. */
+/* Error (in voxels) of each kind, whether the surface is given and edges are split. */
 static const struct kind {
     double error;
-    int exact;
+    int exact, fine;
     const char *name;
-} kinds[KINDS] = {{0, 0, "field, whole"},
-                  {0.1, 0, "field, error 0.1 voxel"},
-                  {0, 1, "exact, whole"},
-                  {0.1, 1, "exact, error 0.1 voxel"}};
+} kinds[KINDS] = {{0, 0, 0, "field, whole"},          {0.1, 0, 0, "field, error 0.1 voxel"},
+                  {0, 1, 0, "exact, whole"},          {0.1, 1, 0, "exact, error 0.1 voxel"},
+                  {0, 1, 1, "exact and fine, whole"}, {0.1, 1, 1, "exact and fine, error 0.1 voxel"}};
 
 static void check_stock(const char *name, swarf_stock *stock, const swarf_surface *surface, double voxel)
 {
@@ -70,6 +69,7 @@ static void check_stock(const char *name, swarf_stock *stock, const swarf_surfac
         swarf_contour_options options = swarf_contour_options_default();
         options.error_mm = kinds[k].error * voxel;
         options.surface = kinds[k].exact ? surface : NULL;
+        options.fine = kinds[k].fine;
         swarf_mesh *mesh = NULL;
         char what[128];
         snprintf(what, sizeof what, "%s, %s", name, kinds[k].name);

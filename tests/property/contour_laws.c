@@ -40,11 +40,12 @@ int main(void)
         double volume = 0;
         CHECK_OK(swarf_stock_volume(stock, &volume));
         long full_euler = 0;
-        for (int kind = 0; kind < 4; kind++) {
-            const int simple = kind & 1, exact = kind >> 1;
+        for (int kind = 0; kind < 6; kind++) {
+            const int simple = kind & 1, exact = kind > 1;
             swarf_contour_options options = swarf_contour_options_default();
             options.error_mm = simple ? 0.1 * voxel : 0;
             options.surface = exact ? surface : NULL;
+            options.fine = kind > 3;
             swarf_contour_report report;
             swarf_mesh *mesh = NULL;
             if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) continue;

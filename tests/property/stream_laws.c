@@ -155,10 +155,11 @@ static void check_stock(swarf_stock *stock, const swarf_surface *surface, const 
     const double voxel = swarf_stock_voxel(stock);
     snprintf(path, sizeof path, "%s/streamed.stl", folder);
     snprintf(whole_path, sizeof whole_path, "%s/whole.stl", folder);
-    for (int kind = 0; kind < (surface ? 4 : 2); kind++) {
+    for (int kind = 0; kind < (surface ? 6 : 2); kind++) {
         swarf_contour_options options = swarf_contour_options_default();
         options.error_mm = kind & 1 ? 0.1 * voxel : 0;
-        options.surface = kind & 2 ? surface : NULL;
+        options.surface = kind > 1 ? surface : NULL;
+        options.fine = kind > 3;
         swarf_contour_report report;
         swarf_mesh *whole = NULL;
         if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &whole, &report))) break;

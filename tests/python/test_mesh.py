@@ -272,6 +272,24 @@ def test_measures_of_a_cut_sphere_like_pocket():
     assert shell.genus == 0
 
 
+def test_fine_edges():
+    """A slot of a thread mill through a block: the lands of the thread are 0.33 voxels wide, two edges in a cell."""
+    stock = swarf.Stock.box((0, 0, -6), (20, 8, 0), 0.23)
+    program = swarf.Program(start=(11, -5, -4))
+    program.add_operation("thread")
+    program.set_section(tool=1)
+    program.add_line((11, 13, -4), feed_mm_min=100)
+    tools = {1: swarf.Cutter("threadmill:d=4,n=2.4,p=1,k=3,l=5")}
+    surface = swarf.Surface(stock, program, tools)
+    stock.simulate(program, tools)
+    volume = 20 * 8 * 6 - 8 * 2 * (1.2 * 4 + 3 * 0.8 ** 2 * math.tan(math.pi / 6))
+    coarse = swarf.Mesh.from_stock(stock, surface=surface)
+    fine = swarf.Mesh.from_stock(stock, surface=surface, fine=True)
+    assert coarse.contour.split_edges == 0 and fine.contour.split_edges > 100
+    assert fine.closed and fine.contour.intersections_left == 0
+    assert abs(fine.volume - volume) < 0.3 * abs(coarse.volume - volume)
+
+
 def test_exact_surface():
     """A slot of 4 mm through a block: 2 x 8 x 6 mm with the edges where they are, though voxels are 0.23 mm."""
     stock = swarf.Stock.box((0, 0, -6), (20, 8, 0), 0.23)

@@ -26,9 +26,13 @@ typedef struct swarf_contour_options {
     size_t triangle_budget;       /**< no more triangles than this, 0: no limit */
     const swarf_surface *surface; /**< of the stock, borrowed for the call; NULL: the field alone */
     size_t moves;                 /**< the stock is the surface after its first so many moves */
+    /** 0 or 1. 1: triangles that leave the surface, as beside edges closer to each other than a voxel and at wedges
+     *  narrower than one, are split where its faces meet; no effect without a surface. On a part with many such edges
+     *  it takes several times as long. In bands the row of cells beside each plane between two stays as it is. */
+    int fine;
 } swarf_contour_options;
 
-/** Error 0 (every vertex), no budget, no surface; all of its moves. */
+/** Error 0 (every vertex), no budget, no surface; all of its moves; not fine. */
 SWARF_API swarf_contour_options swarf_contour_options_default(void);
 
 /** What making a mesh came to. */
@@ -45,6 +49,7 @@ typedef struct swarf_contour_report {
     /** Material thinner than a voxel that the mesh has not, about, as swarf_stock_volume() counts it: in voxels whose
      *  centre lies outside and about which no other's lies inside. */
     double unseen_mm3;
+    size_t split_edges; /**< of triangles that left the surface, with options.fine */
 } swarf_contour_report;
 
 /** From a stock by dual contouring: a closed, oriented 2-manifold with edges. Which voxels are material decides how it
@@ -53,7 +58,7 @@ typedef struct swarf_contour_report {
  *  surface does not have the stock's signs. Walls and gaps thinner than a voxel have no voxel centre in places, and are
  *  not there then; how much material that is the report tells, about. Wedges, roots of threads and tips of points
  *  narrower than a voxel end up to a voxel early, and of crests closer to each other than a voxel the valleys may be
- *  lost.
+ *  lost; with `fine` most of that is there where a voxel's centre is near.
  *  `report` may be NULL. An empty stock gives an empty mesh. SWARF_ERROR_GEOMETRY: material reaches the border of the
  *  level set, which a file of another program may do. The result does not depend on the number of threads. */
 SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options *options,
