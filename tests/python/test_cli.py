@@ -2,6 +2,7 @@
 """The command line, end to end."""
 import contextlib
 import json
+import math
 import os
 import signal
 import subprocess
@@ -418,3 +419,19 @@ def test_a_tool_that_the_program_does_not_name_has_its_own_number(tmp_path, caps
     block = swarf.Mesh.from_stock(swarf.Stock.box((0, 0, -10), (60, 40, 0), 1.0))
     texts = [finding.text for finding in swarf.verify(job, block, voxel=1.0).findings]
     assert "tool T3 has no flutes" in texts
+
+
+def test_fine_edges_where_they_are_asked_for(swarf_run, tmp_path):
+    (tmp_path / "thread.nc").write_text("G21 G90 T1 M6\nG0 X11 Y-5 Z-4\nG1 Y13 F100\nM2\n")
+    words = ("simulate", "thread.nc", "--stock", "box:0,0,-6,20,8,0", "--tool",
+             "1=threadmill:d=4,n=2.4,p=1,k=3,l=5", "--voxel", "0.23")
+    slot = 8 * 2 * (1.2 * 4 + 3 * 0.8 ** 2 * math.tan(math.pi / 6))
+    off = {}
+    for suffix in (".stl", ".ply"):  # streamed, and made as a whole
+        for fine in ((), ("--fine",)):
+            status, _, err = swarf_run(*words, *fine, "--output", "part" + suffix)
+            assert status == 0, err
+            mesh = swarf.Mesh.read(tmp_path / ("part" + suffix))
+            assert mesh.closed
+            off[suffix, bool(fine)] = abs(mesh.volume - (20 * 8 * 6 - slot))
+        assert off[suffix, True] < 0.5 * off[suffix, False], off

@@ -36,6 +36,9 @@ def add(subparsers: Any) -> None:
                          "it")
     command.add_argument("--loose", choices=("keep", "drop"), default="keep",
                          help="pieces that have come loose: keep them, or leave them out (default: keep)")
+    command.add_argument("--fine", action="store_true",
+                         help="mesh files: follow edges that are closer to each other than a voxel, as those of "
+                         "threads; takes longer")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
     command.add_argument("--report", metavar="FILE.json", help="write a report")
     command.add_argument("--machine", metavar="FILE.json", help="speeds and accelerations of the machine, for its time")
@@ -73,6 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
             tolerance=arguments.tolerance,
             allowance=arguments.allowance,
             drop_loose=arguments.loose == "drop",
+            fine=arguments.fine,
             progress=bar,
         )
     made = report.make(result, arguments.input, seconds_read, machine)

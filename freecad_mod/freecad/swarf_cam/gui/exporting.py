@@ -57,6 +57,9 @@ class ExportPanel(TaskPanel):
         layout.addRow(translate("Swarf", "Allowance"), self.allowance)
         self.largest = QtWidgets.QCheckBox(translate("Swarf", "leave loose pieces out"))
         layout.addRow(self.largest)
+        self.fine = QtWidgets.QCheckBox(translate("Swarf", "follow edges closer than a voxel"))
+        self.fine.setToolTip(translate("Swarf", "As those of threads and narrow grooves; takes longer"))
+        layout.addRow(self.fine)
         self.estimate = QtWidgets.QLabel()
         self.estimate.setWordWrap(True)
         layout.addRow(self.estimate)
@@ -75,6 +78,7 @@ class ExportPanel(TaskPanel):
         mesh = self.suffix not in model.STOCK_SUFFIXES
         self.error.setEnabled(mesh)
         self.largest.setEnabled(mesh)
+        self.fine.setEnabled(mesh)
         self.colour.setEnabled(self.suffix in model.MESH_SUFFIXES and self.suffix != ".stl")
         self.allowance.setEnabled(self.chosen_colour == "deviation")
         triangles, size = model.estimate(self.obj, self.suffix, self.error.value(), self.chosen_colour is not None)
@@ -109,7 +113,8 @@ class ExportPanel(TaskPanel):
         self.reading = Slices(
             model.export_steps(self.obj, path, error_mm=self.error.value(), colour=self.chosen_colour,
                                tolerance_mm=settings.tolerance(),
-                               allowance_mm=self.allowance.value(), largest=self.largest.isChecked()),
+                               allowance_mm=self.allowance.value(), largest=self.largest.isChecked(),
+                               fine=self.fine.isChecked()),
             self.on_read, self.form)
 
     def on_read(self, made, error):

@@ -175,6 +175,10 @@
             <translation>Fläche nach ihrer Abweichung</translation>
         </message>
         <message>
+            <source>As those of threads and narrow grooves; takes longer</source>
+            <translation>Wie die von Gewinden und schmalen Nuten; dauert länger</translation>
+        </message>
+        <message>
             <source>Axis that the section is across</source>
             <translation>Achse, quer zu der geschnitten wird</translation>
         </message>
@@ -913,6 +917,10 @@
         <message>
             <source>error</source>
             <translation>Fehler</translation>
+        </message>
+        <message>
+            <source>follow edges closer than a voxel</source>
+            <translation>Kanten folgen, die näher als ein Voxel liegen</translation>
         </message>
         <message>
             <source>leave loose pieces out</source>
