@@ -7,14 +7,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Middle and direction of the normal of a triangle; up for one without area. */
+/* Shares of a triangle's corners in the place where it is looked at. Near the middle, and irrational: the middle itself
+ * of corners with round coordinates often lies just on an edge of a cutter in one of its passes (of heights 0, 0 and 15
+ * on that of a pass at 5), where faces tie that are not the triangle's. */
+static const double shares[3] = {0.36787944117144233, 0.31830988618379067, 0.313810672644767}; /* 1/e, 1/pi, the rest */
+
+/* About the middle and direction of the normal of a triangle; up for one without area. */
 static void describe(const swarf_triangles *t, size_t triangle, double point[3], double direction[3])
 {
     double u[3], v[3];
     for (size_t k = 0; k < 3; k++) {
         double p[3];
         for (size_t i = 0; i < 3; i++) p[i] = (double)t->xyz[3 * (size_t)t->index[3 * triangle + i] + k];
-        point[k] = (p[0] + p[1] + p[2]) / 3;
+        point[k] = shares[0] * p[0] + shares[1] * p[1] + shares[2] * p[2];
         u[k] = p[1] - p[0];
         v[k] = p[2] - p[0];
     }

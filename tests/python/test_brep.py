@@ -75,6 +75,9 @@ def test_where_shapes_meet():
      {PLANE: 9, CYLINDER: 4}, 30),
     ("flat:d=6,l=20", ((-5, 20, 5), (-5, 20, -4), (65, 20, -4), (65, 20, 5), (30, -5, 5), (30, -5, -2), (30, 45, -2)),
      {PLANE: 18}, 48),  # two grooves that cross
+    # in passes; the middle of a wall's triangle, at a third of its height, is on the edge of the first one's cutter
+    ("flat:d=6,l=20", ((-5, 20.1, 5), (-5, 20.1, -2), (65, 20.1, -2), (65, 20.1, -6), (-5, 20.1, -6)),
+     {PLANE: 10}, 24),
     # quarters of circles between the tubes of a tool with rounded corners
     ("bull:d=6,r=1,l=20", ((10, 20, 5), (10, 20, -4), (40, 20, -4)), {PLANE: 9, CYLINDER: 4, TORUS: 2}, 32),
     ("bull:d=6,r=1,l=20", ((10, 10, 5), (10, 10, -4), (40, 10, -4), (40, 30, -4)),
