@@ -325,7 +325,7 @@ class Watching(PanelTest):
             ["+0,000", "1234,5", "-0,2"]
         in_german = [numbers.text(1234567.891, 3), numbers.short(2.5e-7)]
         assert in_german == ["1234567,891", "2,5e-07"], "in double precision"
-        assert [numbers.count(1234567), numbers.size(4.2e9), numbers.size(1234)] == ["1.234.567", "4,2 GB", "0,00 MB"]
+        assert [numbers.count(1234567), numbers.size(4.2e9), numbers.size(1234)] == ["1.234.567", "4,2 GB", "1,2 kB"]
         assert german.accuracy.voxel.text() == "0,2000 mm"
         assert "60,00 cm³" in german.accuracy.outcome.text() and "." not in german.accuracy.estimate.text()
         volume = german.operations.topLevelItem(0).text(3)

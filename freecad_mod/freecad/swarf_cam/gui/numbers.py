@@ -37,9 +37,11 @@ def deviation(value):
 
 
 def size(count_of_bytes):
-    """Bytes, as megabytes or gigabytes."""
+    """Bytes, as kilobytes, megabytes or gigabytes."""
     if count_of_bytes >= 1e9:
         return text(count_of_bytes / 1e9, 1) + " GB"
+    if count_of_bytes < 1e5:
+        return text(count_of_bytes / 1e3, 1) + " kB"
     return text(count_of_bytes / 1e6, 0 if count_of_bytes >= 1e7 else 2) + " MB"
 
 
