@@ -22,17 +22,23 @@ die() {
     exit 1
 }
 
-# step NAME COMMAND...: runs with its output in build/logs/NAME.log, which is printed when the command fails.
+# step NAME COMMAND...: runs with its output in build/logs/NAME.log, which is printed when the command fails. Not within
+# an if: there Bash takes no notice of what fails before the last line of a function.
 step() {
-    local name=$1 log=build/logs/$1.log started=$SECONDS
+    local name=$1 log=build/logs/$1.log started=$SECONDS status
     shift
-    if "$@" >"$log" 2>&1 </dev/null; then
-        printf '%-20s %4d s\n' "$name" $((SECONDS - started))
-    else
-        local status=$?
+    set +e
+    (
+        set -e
+        "$@"
+    ) >"$log" 2>&1 </dev/null
+    status=$?
+    set -e
+    if ((status)); then
         tail -n 200 "$log" >&2
         die "$name failed (status $status); the whole log: $PWD/$log"
     fi
+    printf '%-20s %4d s\n' "$name" $((SECONDS - started))
 }
 
 # need PACKAGE...: installs what is missing; asks for nothing when all is there.
