@@ -49,7 +49,7 @@ static const float *old_leaf(const struct resampling *r, const int32_t slot[3], 
 /* What of an old slot lies in a block. */
 static void copy_slot(const struct resampling *r, const int32_t slot[3], const float *leaf, float tile, block *b)
 {
-    const float scale = (float)(1 / r->old->voxel);
+    const float scale = (float)(1 / r->old->voxel), background = r->old->background;
     int lo[3], hi[3], at[3];
     for (int k = 0; k < 3; k++) {
         at[k] = slot[k] * SWARF_LEAF_DIM - b->corner[k]; /* of its first voxel, may be negative */
@@ -59,7 +59,13 @@ static void copy_slot(const struct resampling *r, const int32_t slot[3], const f
     for (int x = lo[0]; x < hi[0]; x++)
         for (int y = lo[1]; y < hi[1]; y++) {
             float *to = b->value + ((at[0] + x) * BLOCK + at[1] + y) * BLOCK + at[2];
-            for (int z = lo[2]; z < hi[2]; z++) to[z] = leaf ? leaf[x * 64 + y * 8 + z] * scale : tile;
+            for (int z = lo[2]; z < hi[2]; z++) {
+                const float value = leaf ? leaf[x * 64 + y * 8 + z] : 0;
+                if (!leaf)
+                    to[z] = tile;
+                else /* rounding makes no distance of what is only known to be beyond */
+                    to[z] = fabsf(value) < background ? value * scale : copysignf(SWARF_HALF_WIDTH, value);
+            }
         }
 }
 

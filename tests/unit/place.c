@@ -356,6 +356,57 @@ static void check_round(void)
     swarf_stock_destroy(coarse);
 }
 
+/* A block with a channel in it, all of it as large as the voxel tells and nowhere at a limit of what is told apart:
+ * turned without a program. */
+static swarf_stock *make_turned(double edge)
+{
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = edge;
+    const swarf_box outer = {{0.2317 * edge, 0.1173 * edge, 0.0391 * edge},
+                             {60.3519 * edge, 40.4253 * edge, 30.2187 * edge}},
+                    inner = {{-9.7683 * edge, 12.1173 * edge, 19.0391 * edge}, {80 * edge, 25.1439 * edge, 50 * edge}};
+    const swarf_placement there =
+        make_placement((double[]){0.5, -0.4, 0.7}, (double[]){2 * edge, -3.3 * edge, 5.1 * edge});
+    swarf_stock *stock = NULL, *cut = NULL;
+    if (!CHECK_OK(swarf_stock_create_box(&outer, &options, &stock)) ||
+        !CHECK_OK(swarf_stock_create_box(&inner, &options, &cut)))
+        exit(test_end());
+    CHECK_OK(swarf_stock_boolean(stock, cut, SWARF_DIFFERENCE));
+    swarf_stock *turned = place(stock, &there, NULL, 0, 0);
+    swarf_stock_destroy(stock);
+    swarf_stock_destroy(cut);
+    return turned;
+}
+
+/* Nothing hangs on how large a voxel is: to float, three of them are not always three times one. */
+static void check_scale(void)
+{
+    enum { POINTS = 40000 };
+    static double at[POINTS][3], scaled[POINTS][3];
+    static float unit[POINTS], value[POINTS];
+    test_random random = test_random_begin(20261123);
+    for (int i = 0; i < POINTS; i++)
+        for (int k = 0; k < 3; k++) at[i][k] = test_random_in(&random, -40, 70);
+    swarf_stock *stock = make_turned(1);
+    CHECK_OK(swarf_stock_sample(stock, at[0], POINTS, unit));
+    swarf_stock_destroy(stock);
+    const double edges[] = {0.5, 0.07, 0.15, 0.3, 0.6, 0.9};
+    for (int e = 0; e < 6; e++) {
+        int near = 0, wrong = 0;
+        for (int i = 0; i < POINTS; i++)
+            for (int k = 0; k < 3; k++) scaled[i][k] = at[i][k] * edges[e];
+        stock = make_turned(edges[e]);
+        CHECK_OK(swarf_stock_sample(stock, scaled[0], POINTS, value));
+        swarf_stock_destroy(stock);
+        for (int i = 0; i < POINTS; i++) {
+            near += fabsf(unit[i]) < 2.5f;
+            wrong += fabs(value[i] / edges[e] - (double)unit[i]) > 1e-4;
+        }
+        CHECK(near > 1000);
+        CHECK(wrong == 0);
+    }
+}
+
 /* What an earlier set-up cut is, in a picture of this one, the stock as it was. */
 static void check_pick(swarf_stock *turned, swarf_surface *surface, const swarf_placement *over)
 {
@@ -527,6 +578,7 @@ int main(void)
     check_untouched();
     check_cost();
     check_round();
+    check_scale();
     check_chain((double[]){pi, 0, 0}, 1);
     check_chain((double[]){pi + 0.05, 0.03, 0.4}, 0);
     check_errors();
