@@ -24,8 +24,8 @@ def read_json(path: str) -> Any:
 
 def check_suffix(path: Optional[str], what: str, suffix: str) -> None:
     """ValueError unless a path (None: not given) ends in ``suffix``; ``what`` is e.g. "picture"."""
-    if path is not None and os.path.splitext(path)[1].lower() != suffix:
-        raise ValueError(f"{path}: unknown suffix; a {what} is {suffix}")
+    if path is not None and os.path.splitext(os.fsdecode(path))[1].lower() != suffix:
+        raise ValueError(f"{os.fsdecode(path)}: unknown suffix; a {what} is {suffix}")
 
 
 def is_number(value: Any) -> bool:

@@ -11,6 +11,7 @@ What is said of a tool goes before what is said of all, what is said of the mate
 from __future__ import annotations
 
 import math
+import numbers
 from dataclasses import dataclass, field
 from typing import Any, Iterable, Mapping, Optional, Sequence
 
@@ -40,7 +41,7 @@ def check_limits(limits: Limits, what: str = "limits") -> None:
     if not isinstance(limits, Mapping):
         raise ValueError(f"{what}: wanted {{tool: {{kind: number}}}}")
     for tool, entries in limits.items():
-        if tool is not None and type(tool) is not int:
+        if tool is not None and (isinstance(tool, bool) or not isinstance(tool, numbers.Integral)):
             raise ValueError(f"{what}: {tool!r} is no number of a tool, nor None for all")
         of = what if tool is None else f"{what} of tool {tool}"
         if not isinstance(entries, Mapping):

@@ -98,7 +98,7 @@ def simulate(
     suffixes = {output_suffix(path) for path in outputs}
     check_suffix(picture, "picture", ".png")
     if picture is not None:
-        if min(picture_size) < 1:
+        if not all(isinstance(pixels, int) and pixels >= 1 for pixels in picture_size):
             raise ValueError(f"picture of {picture_size[0]} x {picture_size[1]} pixels: 1 or more each way are wanted")
         Camera.view(view, None, picture_size[0] / picture_size[1])  # ValueError, before the long work
     if colour is not None:

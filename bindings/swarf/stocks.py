@@ -53,7 +53,7 @@ NEEDS = {"box": ("lo", "hi"), "cylinder": ("base", "axis", "radius"), "mesh": ("
 def _kind_of(description: dict[str, Any]) -> str:
     """The kind of a stock; ValueError where it is not known or does not tell what it has to."""
     kind: str = description.get("kind", "")
-    if kind not in NEEDS:
+    if not isinstance(kind, str) or kind not in NEEDS:
         raise ValueError(f"stock of kind {kind!r} is not known: {', '.join(NEEDS)}")
     missing = [key for key in NEEDS[kind] if key not in description]
     if missing:

@@ -232,6 +232,7 @@ def bare_job(stock=None):
 @pytest.mark.parametrize("words, says", [
     ({"view": "iso", "picture": "a.png"}, "'iso' is none of isometric, top"),
     ({"picture": "a.jpg"}, "a picture is .png"), ({"picture": "a.png", "picture_size": (5, 0)}, "picture of 5 x 0"),
+    ({"picture": b"a.png", "picture_size": (1.5, 2)}, "picture of 1.5 x 2"),
     ({"colour": "red"}, "wanted operation, deviation"), ({"colour": "deviation"}, "need a design"),
     ({"outputs": ["a.foo"]}, "an output is .stl"),
 ])
@@ -258,6 +259,7 @@ def test_what_cannot_be_verified_is_refused_before_the_work(words, says):
 @pytest.mark.parametrize("stock, says", [
     ({}, "kind '' is not known: box, cylinder, mesh, vdb, result"), ({"kind": "ball"}, "kind 'ball' is not known"),
     ({"kind": "box", "lo": LO}, "kind 'box' without 'hi'; it needs lo, hi"), ({"kind": "mesh"}, "without 'mesh'"),
+    ({"kind": ["box"]}, "kind \\['box'\\] is not known"),
     ({"kind": "vdb"}, "without 'path'"), ({"kind": "result"}, "without 'job'"),
     ({"kind": "box", "lo": LO, "hi": HI, "placement": "x180"}, "swarf.placement.parse"),
 ])

@@ -334,12 +334,18 @@ def open_once_read(fifo):
     return open(handle, "w", encoding="ascii")
 
 
+def answer(number, how):
+    """What a process does at its start, so that it does not hang on what this one was started with."""
+    return lambda: signal.signal(number, how)
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signals_end_it_like_an_error(launcher, tmp_path, number):
     fifo = tmp_path / "job.nc"
     os.mkfifo(fifo)
     command = [launcher, "simulate", "job.nc", "--stock", STOCK, "--tool", TOOL, "--output", "s.stl"]
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as running:
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True,
+                          preexec_fn=answer(number, signal.SIG_DFL)) as running:
         while (pipe := open_once_read(fifo)) is None:  # the command waits for our words from there on
             assert running.poll() is None
             time.sleep(0.01)
@@ -354,16 +360,16 @@ def test_signals_end_it_like_an_error(launcher, tmp_path, number):
 def test_ctrl_c_before_it_has_begun_ends_it_quietly(launcher, tmp_path):
     """A module that it imports waits, to be met there."""
     (tmp_path / "argparse.py").write_text("import time\nprint('importing', flush=True)\ntime.sleep(60)\n")
-    for ignored in (False, True):
+    for how, ended in ((signal.SIG_DFL, -signal.SIGINT), (signal.SIG_IGN, -signal.SIGTERM)):
         with subprocess.Popen([launcher, "--version"], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)},
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                              preexec_fn=lambda: ignored and signal.signal(signal.SIGINT, signal.SIG_IGN)) as running:
+                              preexec_fn=answer(signal.SIGINT, how)) as running:
             assert running.stdout.readline() == "importing\n"
             running.send_signal(signal.SIGINT)
-            if ignored:
+            if how == signal.SIG_IGN:
                 running.terminate()
             _, err = running.communicate(timeout=120)
-        assert (running.returncode, err) == (-signal.SIGTERM if ignored else -signal.SIGINT, "")
+        assert (running.returncode, err) == (ended, "")
 
 
 def test_a_report_that_cannot_be_written_is_named(tmp_path):

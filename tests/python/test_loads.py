@@ -249,6 +249,7 @@ def test_command_line(tmp_path):
     assert done.returncode == 0 and "(accepted: agreed)" in done.stderr and "passed" in done.stdout
     assert command(tmp_path, "--limit", "speed=3").returncode == 2
     done = command(tmp_path, "--limit", "2:engagement=80")
-    assert done.returncode == 2 and done.stderr == "swarf: error: limit of tool 2: there is no such tool; there are 1\n"
+    assert (done.returncode, done.stderr) == (
+        2, "swarf: error: limit of tool 2: the set-up that is checked has no such tool; it has 1\n")
     assert "--limits" in command(tmp_path, "--material", "steel").stderr
     assert "teeth" in command(tmp_path, "--tool", "2=flat:d=6,l=20,teeth=0").stderr

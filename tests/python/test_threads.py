@@ -81,7 +81,7 @@ def test_other_threads_run_meanwhile(cutter):
         thread = threading.Thread(target=stock.simulate, args=(program, {1: cutter}),
                                   kwargs={"batch": 1, "progress": told.put})
         thread.start()
-        told.get()
+        told.get(timeout=60)
         try:
             stock.volume()
             return False

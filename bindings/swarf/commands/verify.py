@@ -63,7 +63,7 @@ def _check_tools(words: Sequence[loads.Limits], job: Job) -> None:
     """ValueError for a ``--limit`` of a tool that the job has not."""
     for tool in (tool for limits in words for tool in limits if tool is not None):
         if tool not in job.tools:
-            raise ValueError(f"limit of tool {tool}: there is no such tool; there are "
+            raise ValueError(f"limit of tool {tool}: the set-up that is checked has no such tool; it has "
                              f"{', '.join(str(number) for number in sorted(job.tools) if number >= 0)}")
 
 
