@@ -9,6 +9,8 @@
  *            make that meet in edges, be they ridges, grooves or both */
 #include "stock/interpolate.h"
 
+#include "stock/leaf.h"
+
 #include <math.h>
 
 /* In voxels: second differences from which on the field is taken to have an edge; less than that of a ball of ten
@@ -263,15 +265,15 @@ static float keep_near(const cell *c, float value)
 {
     float lo = -c->limit, hi = c->limit;
     for (int i = 0; i < CORNERS; i++) {
-        if (!(fabsf(c->value[i]) < c->limit)) continue;
         float square = 0;
         for (int k = 0; k < 3; k++) {
             const float away = (i >> (2 - k) & 1 ? 1 - c->t[k] : c->t[k]);
             square += away * away;
         }
         const float away = sqrtf(square);
-        lo = fmaxf(lo, c->value[i] - away);
-        hi = fminf(hi, c->value[i] + away);
+        /* what is not known is beyond the limit: not so outside, where leaves are dropped that are nearer */
+        if (c->value[i] > -c->limit) lo = fmaxf(lo, (c->value[i] < c->limit ? c->value[i] : SWARF_LEAF_DROP) - away);
+        if (c->value[i] < c->limit) hi = fminf(hi, c->value[i] + away);
     }
     return lo <= hi ? fminf(fmaxf(value, lo), hi) : c->smooth;
 }

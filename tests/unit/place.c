@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stocks.h"
 #include "test.h"
 
 static const double pi = 3.14159265358979323846, voxel = 0.2;
@@ -407,6 +408,47 @@ static void check_scale(void)
     }
 }
 
+/* Random cuts leave fields that are no distances everywhere: of finer voxels that are made of those none says the other
+ * side where both are sure. */
+static void check_sides(void)
+{
+    enum { POINTS = 100000 };
+    static double at[POINTS][3], turned[POINTS][3];
+    static float before[POINTS], after[POINTS];
+    const uint64_t states[] = {3000016, 15000052, 0, 0};
+    test_random seeds = test_random_begin(20261124);
+    for (int i = 0; i < 4; i++) {
+        test_random random = {.state = states[i] ? states[i] : test_random_below(&seeds, UINT64_MAX)};
+        swarf_surface *surface = NULL;
+        swarf_stock *stock = stock_random(&random, test_random_in(&random, 0.1, 0.25), 12, &surface), *finer = NULL;
+        const double own = swarf_stock_voxel(stock);
+        swarf_box box;
+        double angle[3], shift[3];
+        for (int k = 0; k < 3; k++) {
+            angle[k] = test_random_in(&random, -3, 3);
+            shift[k] = test_random_in(&random, -50, 50);
+        }
+        const swarf_placement there = make_placement(angle, shift);
+        CHECK_OK(swarf_stock_box(stock, &box));
+        finer = place(stock, &there, NULL, 0.35 * own, 0);
+        for (int p = 0; p < POINTS; p++) {
+            for (int k = 0; k < 3; k++) at[p][k] = test_random_in(&random, box.lo[k] - own, box.hi[k] + own);
+            swarf_placement_point(&there, at[p], turned[p]);
+        }
+        CHECK_OK(swarf_stock_sample(stock, at[0], POINTS, before));
+        CHECK_OK(swarf_stock_sample(finer, turned[0], POINTS, after));
+        int inside = 0, wrong = 0;
+        for (int p = 0; p < POINTS; p++) {
+            inside += before[p] < 0;
+            wrong += (before[p] < 0) != (after[p] < 0) && fminf(fabsf(before[p]), fabsf(after[p])) > 0.5 * own;
+        }
+        CHECK(inside > POINTS / 10 && wrong == 0);
+        swarf_surface_release(surface);
+        swarf_stock_destroy(finer);
+        swarf_stock_destroy(stock);
+    }
+}
+
 /* What an earlier set-up cut is, in a picture of this one, the stock as it was. */
 static void check_pick(swarf_stock *turned, swarf_surface *surface, const swarf_placement *over)
 {
@@ -579,6 +621,7 @@ int main(void)
     check_cost();
     check_round();
     check_scale();
+    check_sides();
     check_chain((double[]){pi, 0, 0}, 1);
     check_chain((double[]){pi + 0.05, 0.03, 0.4}, 0);
     check_errors();

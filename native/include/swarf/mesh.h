@@ -103,9 +103,9 @@ SWARF_API swarf_place_options swarf_place_options_default(void);
  *  voxel, at edges too. Without one, and with voxels no larger than the old ones, it is looked for between the old
  *  voxels: faces and edges move by less than a tenth of a voxel (measured: 0.01; 0.07 when turned once more) where the
  *  faces beside them are three voxels wide; corners where a ridge meets a groove by up to 0.3, for voxels tell of each
- *  face only where it is the nearest, and what is as small as voxels by as much. Larger voxels without a surface go by
- *  the mesh of the field alone, whose edges are known to half a voxel. SWARF_ERROR_GEOMETRY: nothing is left of the
- *  stock. */
+ *  face only where it is the nearest, and what is as small as voxels by as much; what is thinner than two may part.
+ *  Larger voxels without a surface go by the mesh of the field alone, whose edges are known to half a voxel.
+ *  SWARF_ERROR_GEOMETRY: nothing is left of the stock. */
 SWARF_API swarf_status swarf_stock_place(swarf_stock *stock, const swarf_placement *placement,
                                          const swarf_place_options *options, const swarf_progress *progress,
                                          swarf_stock **out, int *lossless);
