@@ -278,14 +278,17 @@ static swarf_status attempt(const stage *s, int first, found *out)
     const int keeps = !first || work->band;
     uint8_t *marks = keeps ? mark_vertices(work, s->facets) : NULL;
     if (keeps && !marks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    const int fine = s->options->fine && work->surface;
     size_t split = 0;
     swarf_status status = SWARF_OK;
-    if (s->options->fine && work->surface) status = swarf_contour_crease(work, s->facets, &marks, &split);
+    if (fine) /* later attempts can be broken off, but get no further */
+        status =
+            swarf_contour_crease(work, s->facets, &marks, s->progress, first ? 0.7 : 0.99, first ? 0.8 : 0.99, &split);
     if (first) s->report->split_edges += split;
     swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
     if (status == SWARF_OK)
         status = swarf_facets_simplify(s->facets, s->options->error_mm, voxel, s->options->triangle_budget, marks,
-                                       s->memo, first ? s->progress : NULL, 0.7, 0.9);
+                                       s->memo, first ? s->progress : NULL, fine ? 0.8 : 0.7, 0.9);
     free(marks);
     SWARF_TRY(status);
     return find_pairs(s, first, out);

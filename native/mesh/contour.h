@@ -178,7 +178,8 @@ swarf_status swarf_contour_tile(contour *work, contour_block *block);
 swarf_status swarf_contour_join(contour *work, contour_block *block);
 /** Split edges of facets that leave the exact surface where its faces meet; those of vertices whose *marks are
  *  SWARF_VERTEX_LOCKED stay. *marks (NULL: none) grow with the vertices; *made: those of this band. */
-swarf_status swarf_contour_crease(const contour *work, swarf_facets *facets, uint8_t **marks, size_t *made);
+swarf_status swarf_contour_crease(const contour *work, swarf_facets *facets, uint8_t **marks,
+                                  const swarf_progress *progress, double from, double to, size_t *made);
 void swarf_contour_free(contour *work);
 /** Free the blocks only. */
 void swarf_contour_clear(contour *work);

@@ -483,12 +483,13 @@ static size_t list_cuts(const splitting *s, cut_facet *cuts)
 }
 
 /* Cut up the facets, less the splits of those that would turn over. */
-static swarf_status cut_facets(const splitting *s, cutting *c)
+static swarf_status cut_facets(const splitting *s, cutting *c, const swarf_progress *progress)
 {
-    for (int again = 1; again;) {
+    double from = 0.5;
+    for (int again = 1; again; from = 1) {
         again = 0;
         c->count = list_cuts(s, c->cuts);
-        SWARF_TRY(swarf_parallel_for((c->count + CHUNK - 1) / CHUNK, cut_some, c, NULL, 0, 1));
+        SWARF_TRY(swarf_parallel_for((c->count + CHUNK - 1) / CHUNK, cut_some, c, progress, from, 1));
         for (size_t i = 0; i < c->count; i++) {
             if (c->cuts[i].parts) continue;
             again = 1;
@@ -509,7 +510,7 @@ static swarf_status grow(swarf_facets *facets, size_t pairs, uint8_t **marks)
     if (facet) facets->facet = facet;
     uint8_t *grown = *marks ? realloc(*marks, all + 1) : NULL;
     if (grown) *marks = grown;
-    if (!xyz || !facet || (*marks && !grown) || all >= UINT32_MAX)
+    if (!xyz || !facet || (*marks && !grown) || all >= UINT32_MAX || facets->facet_count + 2 * pairs >= UINT32_MAX)
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for vertices");
     return SWARF_OK;
 }
@@ -541,19 +542,21 @@ static size_t put_in(const splitting *s, const cutting *c, swarf_facets *facets,
 }
 
 /* Split what edges there are to be split. */
-static swarf_status split_facets(splitting *s, swarf_facets *facets, uint8_t **marks, size_t *made)
+static swarf_status split_facets(splitting *s, swarf_facets *facets, uint8_t **marks, const swarf_progress *progress,
+                                 size_t *made)
 {
-    s->points = malloc((s->count + 1) * sizeof *s->points);
+    s->points = calloc(s->count + 1, sizeof *s->points);
     s->made = calloc(s->count + 1, 1);
     cutting c = {.splits = s, .cuts = malloc((2 * s->count + 1) * sizeof *c.cuts)};
     uint32_t *number = malloc((s->count + 1) * sizeof *number);
     swarf_status status = SWARF_OK;
     if (!s->points || !s->made || !c.cuts || !number) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
-    if (status == SWARF_OK) status = swarf_parallel_for((s->count + CHUNK - 1) / CHUNK, split_some, s, NULL, 0, 1);
+    if (status == SWARF_OK)
+        status = swarf_parallel_for((s->count + CHUNK - 1) / CHUNK, split_some, s, progress, 0, 0.5);
     if (status == SWARF_OK) status = grow(facets, s->count, marks);
     for (size_t i = 0; i < s->count && status == SWARF_OK; i++)
         for (size_t k = 0; k < 3; k++) facets->xyz[3 * (facets->vertex_count + i) + k] = (float)s->points[i][k];
-    if (status == SWARF_OK) status = cut_facets(s, &c);
+    if (status == SWARF_OK) status = cut_facets(s, &c, progress);
     if (status == SWARF_OK) *made = put_in(s, &c, facets, *marks, number);
     free(s->points);
     free(s->made);
@@ -562,16 +565,20 @@ static swarf_status split_facets(splitting *s, swarf_facets *facets, uint8_t **m
     return status;
 }
 
-swarf_status swarf_contour_crease(const contour *work, swarf_facets *facets, uint8_t **marks, size_t *made)
+swarf_status swarf_contour_crease(const contour *work, swarf_facets *facets, uint8_t **marks,
+                                  const swarf_progress *progress, double from, double to, size_t *made)
 {
     *made = 0;
     size_t before = 0;
     for (int round = 0; round < ROUNDS && before != facets->vertex_count; round++) {
         splitting s = {.work = work, .facets = facets};
+        swarf_progress_share share = {progress, from + round * (to - from) / ROUNDS,
+                                      from + (round + 1) * (to - from) / ROUNDS};
+        const swarf_progress part = swarf_progress_part(&share);
         size_t own = 0;
         before = facets->vertex_count;
         SWARF_TRY(find_pairs(work, facets, *marks, &s.edges, &s.count));
-        const swarf_status status = s.count ? split_facets(&s, facets, marks, &own) : SWARF_OK;
+        const swarf_status status = s.count ? split_facets(&s, facets, marks, progress ? &part : NULL, &own) : SWARF_OK;
         free(s.edges);
         SWARF_TRY(status);
         *made += own;

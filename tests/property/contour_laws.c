@@ -27,6 +27,48 @@ static void check_count(void)
     swarf_mesh_release(mesh);
 }
 
+typedef struct listener {
+    int calls, last; /* the call that says stop; 0: none */
+    int back;        /* reports of less than there was before */
+    double done;
+    int among[3]; /* reports before the facets are split, meanwhile, later */
+} listener;
+
+static int listen(void *user, double fraction)
+{
+    listener *l = user;
+    l->back += fraction < l->done;
+    l->done = fraction;
+    l->among[fraction <= 0.7 ? 0 : fraction < 0.8 ? 1 : 2]++;
+    return ++l->calls == l->last;
+}
+
+/* A fine mesh tells its progress, and can be broken off at every stage. */
+static void check_cancel(swarf_stock *stock, const swarf_surface *surface)
+{
+    enum { TIMES = 12 };
+    swarf_contour_options options = swarf_contour_options_default();
+    options.surface = surface;
+    options.fine = 1;
+    listener all = {0};
+    swarf_mesh *mesh = NULL;
+    CHECK_OK(swarf_progress_interval_set(0));
+    CHECK_OK(swarf_threads_set(1));
+    CHECK_OK(swarf_mesh_contour(stock, &options, &(swarf_progress){listen, &all}, &mesh, NULL));
+    CHECK(all.back == 0 && all.done == 1);
+    CHECK(all.among[0] && all.among[1] && all.among[2]);
+    swarf_mesh_release(mesh);
+    for (int i = 1; i <= TIMES; i++) {
+        listener some = {.last = 1 + i * (all.calls - 1) / (TIMES + 1)};
+        swarf_mesh *none = NULL;
+        CHECK_FAILS(swarf_mesh_contour(stock, &options, &(swarf_progress){listen, &some}, &none, NULL),
+                    SWARF_ERROR_CANCELLED, NULL);
+        CHECK(none == NULL && some.calls == some.last);
+    }
+    CHECK_OK(swarf_threads_set(0));
+    CHECK_OK(swarf_progress_interval_set(100));
+}
+
 int main(void)
 {
     check_count();
@@ -68,6 +110,7 @@ int main(void)
                 full_euler = euler_number(mesh);
             swarf_mesh_release(mesh);
         }
+        if (i < 3) check_cancel(stock, surface);
         swarf_surface_release(surface);
         swarf_stock_destroy(stock);
     }
