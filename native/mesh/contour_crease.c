@@ -485,11 +485,10 @@ static size_t list_cuts(const splitting *s, cut_facet *cuts)
 /* Cut up the facets, less the splits of those that would turn over. */
 static swarf_status cut_facets(const splitting *s, cutting *c, const swarf_progress *progress)
 {
-    double from = 0.5;
-    for (int again = 1; again; from = 1) {
+    for (int again = 1, first = 1; again; first = 0) {
         again = 0;
         c->count = list_cuts(s, c->cuts);
-        SWARF_TRY(swarf_parallel_for((c->count + CHUNK - 1) / CHUNK, cut_some, c, progress, from, 1));
+        SWARF_TRY(swarf_parallel_for((c->count + CHUNK - 1) / CHUNK, cut_some, c, progress, first ? 0.5 : 1, 1));
         for (size_t i = 0; i < c->count; i++) {
             if (c->cuts[i].parts) continue;
             again = 1;
