@@ -412,7 +412,7 @@ def _circle(a: Shape, b: Shape, points: list[Vector], close: float) -> Optional[
 
 def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = None, progress: Report = None) -> Brep:
     """The solid of a closed mesh on a Surface, made of voxels this large (mm), with little left out of it
-    (Mesh.from_stock(error=voxel / 50)). NotAnalytic where it is not bounded by planes, cylinders, cones, spheres and
+    (Mesh.from_stock(error=voxel / 100)). NotAnalytic where it is not bounded by planes, cylinders, cones, spheres and
     tori alone, or of too many faces; ValueError for a mesh that is empty or open."""
     if not mesh.triangle_count or not mesh.closed:
         raise ValueError(Said("no mesh"))

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import swarf
-from swarf import brep, regions, shapes, step
+from swarf import brep, regions, shapes, solids, step
 from swarf.job import Job
 from swarf.shapes import CONE, CYLINDER, PLANE, SPHERE, TORUS, Shape, add, dot
 
@@ -28,7 +28,7 @@ def cut(tool, *moves, stock=None):
             program.add_line(move, feed_mm_min=100)
     job = Job(name="cut", program=program, tools={1: swarf.Cutter(tool)}, stock=stock or BLOCK)
     made = swarf.simulate(job, voxel=VOXEL, compare=False)
-    return swarf.Mesh.from_stock(made.stock, 0.02 * VOXEL, surface=made.surface), made.surface
+    return swarf.Mesh.from_stock(made.stock, solids.ERROR_VOXELS * VOXEL, surface=made.surface), made.surface
 
 
 @pytest.mark.parametrize("shape", [
@@ -78,6 +78,9 @@ def test_where_shapes_meet():
     # in passes; the middle of a wall's triangle, at a third of its height, is on the edge of the first one's cutter
     ("flat:d=6,l=20", ((-5, 20.1, 5), (-5, 20.1, -2), (65, 20.1, -2), (65, 20.1, -6), (-5, 20.1, -6)),
      {PLANE: 10}, 24),
+    # a bend of 8 degrees: the outer wall turns in a cylinder that is no two voxels wide
+    ("flat:d=10,l=20", ((10, 15, 5), (10, 15, -4), (30, 15, -4), (50, 15 + 20 * math.tan(math.radians(8)), -4)),
+     {PLANE: 11, CYLINDER: 3}, 33),
     # quarters of circles between the tubes of a tool with rounded corners
     ("bull:d=6,r=1,l=20", ((10, 20, 5), (10, 20, -4), (40, 20, -4)), {PLANE: 9, CYLINDER: 4, TORUS: 2}, 32),
     ("bull:d=6,r=1,l=20", ((10, 10, 5), (10, 10, -4), (40, 10, -4), (40, 30, -4)),

@@ -259,14 +259,6 @@ def _exact(data, stock_file, progress=None):
     return job, left, first.surface(job.program, job.tools, progress=share(0.75, 1))
 
 
-# A solid is made of a mesh with an error of so many voxels: few triangles where it is flat, and edges that wander
-# little.
-SOLID_ERROR_VOXELS = 0.02
-
-# Triangles whose faces are told in a minute or so.
-SOLID_TRIANGLES_MAX = 500000
-
-
 @dataclass
 class Analytic:
     """A STEP file with faces as they were cut. share: part of the area on planes, cylinders, cones, spheres and tori,
@@ -288,14 +280,14 @@ def export_analytic(data, stock_file, path, largest=False, progress=None):
     brep, step, solids, parts, shares = map(_package, ("brep", "step", "solids", "parts", "progress"))
     share = functools.partial(shares.share, progress)
     _, left, surface = _exact(data, stock_file, share(0, 0.4))
-    error = SOLID_ERROR_VOXELS * left.voxel
+    error = solids.ERROR_VOXELS * left.voxel
     mesh = swarf.Mesh.from_stock(left, error, surface=surface, progress=share(0.4, 0.7))
     if not mesh.triangle_count:
         raise JobError("nothing is left of the stock")
     if largest:
         mesh = parts.largest(mesh)
-    if mesh.triangle_count > SOLID_TRIANGLES_MAX:
-        return Analytic(None, said("too many triangles", triangles=mesh.triangle_count, most=SOLID_TRIANGLES_MAX))
+    if mesh.triangle_count > solids.TRIANGLES_MAX:
+        return Analytic(None, said("too many triangles", triangles=mesh.triangle_count, most=solids.TRIANGLES_MAX))
     try:
         made = brep.make(mesh, surface, left.voxel, progress=share(0.7, 0.9))
     except brep.NotAnalytic as problem:

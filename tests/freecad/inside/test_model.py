@@ -75,7 +75,8 @@ class TestModel(unittest.TestCase):
 
     def test_facets_are_made_where_they_are_needed(self):
         """What is analytic has no second mesh, and what was not measured has no share."""
-        counts, export, limit = [], native.export, native.SOLID_TRIANGLES_MAX
+        counts, export = [], native.export
+        solids = importlib.import_module(native.load().__name__ + ".solids")
 
         def counted(*args, **words):
             counts.append(export(*args, **words))
@@ -85,11 +86,8 @@ class TestModel(unittest.TestCase):
                 mock.patch.object(model.FreeCAD, "Console", mock.Mock(wraps=FreeCAD.Console)) as console:
             model.export(self.obj, self.path("part.step"))
             self.assertEqual(counts, [])
-            native.SOLID_TRIANGLES_MAX = 4
-            try:
+            with mock.patch.object(solids, "TRIANGLES_MAX", 4):
                 model.export(self.obj, self.path("part.step"))
-            finally:
-                native.SOLID_TRIANGLES_MAX = limit
             self.assertEqual(counts, [self.obj.Mesh.CountFacets])
             with mock.patch.object(model, "_doubt", lambda *_: "in doubt"):  # told in the end: its mesh is made then
                 model.export(self.obj, self.path("doubt.step"))
