@@ -173,7 +173,7 @@ const char mesh_origins_doc[] =
     "What made each triangle: a read-only (m, 4) int32 view of set-up (0: the Surface's own, 1: the one before\n"
     "...), move (-1: the first shape, -2: not known), piece of the cutter or the first shape, and kind of face:\n"
     "0 other, 1 plane, 2 cylinder, 3 cone, 4 sphere, 5 torus. Looked for within ``reach`` mm (0: a voxel) of the\n"
-    "triangle's middle.";
+    "triangle, beside its middle.";
 
 static swarf_status fill_origins(const swarf_surface *surface, const swarf_surface_point *points, size_t rows,
                                  const swarf_progress *progress, void *out)

@@ -735,7 +735,7 @@ class Mesh:
         """What made each triangle: a read-only (m, 4) int32 view of set-up (0: the Surface's own, 1: the one before
         ...), move (-1: the first shape, -2: not known), piece of the cutter or the first shape, and kind of face: 0
         other, 1 plane, 2 cylinder, 3 cone, 4 sphere, 5 torus. Looked for within ``reach`` mm (0: a voxel) of the
-        triangle's middle."""
+        triangle, beside its middle."""
     def faces(
         self, surface: Surface, *, moves: Optional[int] = None, reach: float = 0.0, progress: Progress = None
     ) -> memoryview:

@@ -146,6 +146,18 @@ static int is_flat(const float *at, int axis, double voxel)
     return 1;
 }
 
+/* What makes the surface at a voxel, as seen from a little further along the edge. Where faces that go through the
+ * middle of voxels, as round numbers make them do, meet in a line of voxels, these alone see no face but the line. */
+static void look_beside(const swarf_surface_near *near, const double a[3], double voxel, int axis, double t,
+                        swarf_surface_point *found)
+{
+    double point[3] = {a[0], a[1], a[2]};
+    swarf_surface_point beside;
+    point[axis] += (t < 0.5 ? noise : 1 - noise) * voxel;
+    swarf_surface_evaluate(near, point, &beside);
+    if (fabs(beside.value) <= 2 * noise * voxel) *found = beside;
+}
+
 /* From the exact surface: Newton's steps from where the field has it, which on flat faces is at once; the bracketed
  * search where these do not end. A voxel as good as on the surface may have the other sign in the field's floats: then
  * the surface is at that voxel. Where there is no such surface the field's crossing stays. */
@@ -173,6 +185,7 @@ void swarf_contour_cross_exact(const swarf_surface_near *near, const double a[3]
         swarf_surface_evaluate(near, point, &found);
         if (fabs(found.value) > noise * voxel) return;
     }
+    if (t < noise || t > 1 - noise) look_beside(near, a, voxel, axis, t, &found);
     t = fmin(fmax(t, SWARF_CONTOUR_MARGIN), 1 - SWARF_CONTOUR_MARGIN);
     *crossing = (contour_crossing){.t = (float)t, .move = (int32_t)found.move, .piece = found.piece};
     for (int k = 0; k < 3; k++) crossing->normal[k] = (float)found.normal[k];

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Meshes of stocks: measures, pieces, sections, colours and the formats, read back by other means."""
 import json
+import itertools
 import math
 import os
 import struct
@@ -288,6 +289,25 @@ def test_fine_edges():
     assert coarse.contour.split_edges == 0 and fine.contour.split_edges > 100
     assert fine.closed and fine.contour.intersections_left == 0
     assert abs(fine.volume - volume) < 0.3 * abs(coarse.volume - volume)
+
+
+@pytest.mark.parametrize("wall, floor", [(16.6, -6.6), (16.6, -9), (17, -6.6), (17, -9), (16.5, -6.7)])
+def test_corners_where_faces_go_through_the_middle_of_voxels(wall, floor):
+    """A slot of 10 mm through a block of voxels of 0.4 mm, at round numbers."""
+    program = swarf.Program(start=(-10, wall - 5, floor))
+    program.add_operation("slot")
+    program.set_section(tool=1)
+    program.add_line((50, wall - 5, floor), feed_mm_min=100)
+    tools = {1: swarf.Cutter("flat:d=10,l=30")}
+    stock = swarf.Stock.box((0, 0, -12), (40, 40, 0), 0.4)
+    surface = swarf.Surface(stock, program, tools)
+    stock.simulate(program, tools)
+    for error in (0, 0.004):
+        mesh = swarf.Mesh.from_stock(stock, error, surface=surface)
+        assert mesh.closed
+        assert mesh.volume == pytest.approx(40 * (40 * 12 + 10 * floor), rel=1e-5)
+        for corner in itertools.product((0, 40), (wall - 10, wall), (floor, 0)):
+            assert min(math.dist(corner, vertex) for vertex in mesh.vertices.tolist()) < 0.02 * 0.4
 
 
 def test_exact_surface():

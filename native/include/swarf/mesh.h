@@ -75,8 +75,9 @@ SWARF_API swarf_status swarf_mesh_stream(swarf_stock *stock, const swarf_contour
                                          const char *path, const swarf_progress *progress,
                                          swarf_contour_report *report);
 
-/** What made each triangle: the point of the surface, after its first `moves`, that is nearest along the normal to the
- *  triangle's middle, no farther than reach_mm (0: a voxel); `move` -2 where there is none. `out`: one per triangle. */
+/** What made each triangle: the point of the surface, after its first `moves`, that is nearest along the normal to a
+ *  place beside the triangle's middle, no farther than reach_mm (0: a voxel); `move` -2 where there is none. `out`: one
+ * per triangle. */
 SWARF_API swarf_status swarf_mesh_origins(const swarf_mesh *mesh, const swarf_surface *surface, size_t moves,
                                           double reach_mm, const swarf_progress *progress, swarf_surface_point *out);
 
