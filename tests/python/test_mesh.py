@@ -273,16 +273,21 @@ def test_measures_of_a_cut_sphere_like_pocket():
     assert shell.genus == 0
 
 
-def test_fine_edges():
-    """A slot of a thread mill through a block: the lands of the thread are 0.33 voxels wide, two edges in a cell."""
-    stock = swarf.Stock.box((0, 0, -6), (20, 8, 0), 0.23)
-    program = swarf.Program(start=(11, -5, -4))
-    program.add_operation("thread")
+def cut_through(stock, tool, start, end):
+    """A stock that a tool has gone through on a line, and its Surface."""
+    program, tools = swarf.Program(start=start), {1: swarf.Cutter(tool)}
+    program.add_operation("slot")
     program.set_section(tool=1)
-    program.add_line((11, 13, -4), feed_mm_min=100)
-    tools = {1: swarf.Cutter("threadmill:d=4,n=2.4,p=1,k=3,l=5")}
+    program.add_line(end, feed_mm_min=100)
     surface = swarf.Surface(stock, program, tools)
     stock.simulate(program, tools)
+    return stock, surface
+
+
+def test_fine_edges():
+    """A slot of a thread mill through a block: the lands of the thread are 0.33 voxels wide, two edges in a cell."""
+    stock, surface = cut_through(swarf.Stock.box((0, 0, -6), (20, 8, 0), 0.23), "threadmill:d=4,n=2.4,p=1,k=3,l=5",
+                                 (11, -5, -4), (11, 13, -4))
     volume = 20 * 8 * 6 - 8 * 2 * (1.2 * 4 + 3 * 0.8 ** 2 * math.tan(math.pi / 6))
     coarse = swarf.Mesh.from_stock(stock, surface=surface)
     fine = swarf.Mesh.from_stock(stock, surface=surface, fine=True)
@@ -294,14 +299,8 @@ def test_fine_edges():
 @pytest.mark.parametrize("wall, floor", [(16.6, -6.6), (16.6, -9), (17, -6.6), (17, -9), (16.5, -6.7)])
 def test_corners_where_faces_go_through_the_middle_of_voxels(wall, floor):
     """A slot of 10 mm through a block of voxels of 0.4 mm, at round numbers."""
-    program = swarf.Program(start=(-10, wall - 5, floor))
-    program.add_operation("slot")
-    program.set_section(tool=1)
-    program.add_line((50, wall - 5, floor), feed_mm_min=100)
-    tools = {1: swarf.Cutter("flat:d=10,l=30")}
-    stock = swarf.Stock.box((0, 0, -12), (40, 40, 0), 0.4)
-    surface = swarf.Surface(stock, program, tools)
-    stock.simulate(program, tools)
+    stock, surface = cut_through(swarf.Stock.box((0, 0, -12), (40, 40, 0), 0.4), "flat:d=10,l=30",
+                                 (-10, wall - 5, floor), (50, wall - 5, floor))
     for error in (0, 0.004):
         mesh = swarf.Mesh.from_stock(stock, error, surface=surface)
         assert mesh.closed
