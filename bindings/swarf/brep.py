@@ -6,7 +6,8 @@ edges in which they meet.
     mesh edges between the same two regions     a chain, later an edge
     mesh vertices where more chains end         corners
 
-The mesh tells only what is beside what; where corners and edges lie is solved on the shapes. Faces that go on smoothly
+The mesh tells only what is beside what, and of what it is too coarse for (see strips) the surface does; where corners
+and edges lie is solved on the shapes. Faces that go on smoothly
 into each other have no edge in the mesh: there the chain wanders by about a voxel, and their line of contact is
 solved."""
 from __future__ import annotations
@@ -16,18 +17,16 @@ from dataclasses import dataclass, field
 from itertools import product
 from typing import Iterator, Optional, Sequence
 
+from . import chains, strips
 from ._native import Mesh, Surface
+from .chains import SLOPPY, Chain
 from .progress import Report, check, share
 from .regions import NotAnalytic, Regions, find
 from .shapes import (CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet,
-                     on, tangency, unit)
+                     on, unit)
 from .wording import Said
 
 __all__ = ["Brep", "Edge", "Face", "NotAnalytic", "make"]
-
-#: mm; what shapes that should meet may miss each other by: the last digits of programs are twice that, and an edge is
-#: told to be as inexact as it is.
-SLOPPY = 2e-3
 
 #: mm; what an edge that is told to be a line, a circle or a curve may be off.
 CLOSE = 1e-6
@@ -37,9 +36,6 @@ CURVE = 1e-5
 
 #: mm; what corners in which faces touch may be off.
 UNSETTLED = 1e-3
-
-#: Cosine of the angle from which on faces cross and do not touch, as far as the mesh can tell.
-CROSSING = 0.8
 
 #: Points of an edge that are looked at, about.
 MOST_SAMPLES = 32
@@ -90,17 +86,6 @@ class Brep:
     inexact_mm: float
 
 
-@dataclass
-class _Chain:
-    """Mesh vertices from corner to corner, the left region's half-edges going along."""
-
-    left: int
-    right: int
-    vertices: list[int]
-    closed: bool
-    touching: bool = False
-
-
 class _Maker:
     """One solid in the making."""
 
@@ -109,43 +94,11 @@ class _Maker:
         self.progress: Report = None
         self.done = 0.0
         self.left = 0.0  # what equations are off, mm
-        self.chains: list[_Chain] = []
-        self.chain_of: dict[tuple[int, int], tuple[int, bool]] = {}  # half-edge of a border -> its chain, forwards
+        self.chains, self.chain_of = chains.find(regions)
         self.corner_of: dict[int, int] = {}
 
     def fail(self, key: str, **values: float) -> NotAnalytic:
         return NotAnalytic(Said(key, **values), self.regions.known_share)
-
-    # ---- what is beside what ----
-
-    def find_chains(self) -> None:
-        """Borders between regions, cut where more than two of them meet."""
-        borders = self.regions.borders()
-        ways: dict[int, list[tuple[int, int]]] = {}
-        for u, v in borders:
-            ways.setdefault(u, []).append((u, v))
-        corners = {vertex for vertex, out in ways.items() if len(out) != 2}
-        taken: set[tuple[int, int]] = set()
-        for begin in sorted(corners) + sorted(ways):
-            for first in ways[begin]:
-                if first in taken or borders[first][0] > borders[first][1]:
-                    continue
-                self._follow(first, borders, ways, corners, taken)
-
-    def _follow(self, first: tuple[int, int], borders: dict[tuple[int, int], tuple[int, int]],
-                ways: dict[int, list[tuple[int, int]]], corners: set[int], taken: set[tuple[int, int]]) -> None:
-        left, right = borders[first]
-        vertices, half = [first[0]], first
-        number = len(self.chains)
-        while True:
-            taken.update((half, (half[1], half[0])))
-            self.chain_of[half] = number, True
-            self.chain_of[half[1], half[0]] = number, False
-            vertices.append(half[1])
-            if half[1] in corners or half[1] == first[0]:
-                break
-            half = [way for way in ways[half[1]] if way[1] != half[0]][0]
-        self.chains.append(_Chain(left, right, vertices, vertices[0] == vertices[-1] and vertices[0] not in corners))
 
     # ---- where it lies ----
 
@@ -155,30 +108,20 @@ class _Maker:
     def equations(self, regions: Sequence[int]) -> list[Equations]:
         return [on(self.shape(region)) for region in regions]
 
-    def contact(self, chain: _Chain) -> list[Equations]:
+    def contact(self, chain: Chain) -> list[Equations]:
         """What holds along a chain."""
         found = self.equations((chain.left, chain.right))
         if chain.touching:
             found.append(self.touch(chain))
         return found
 
-    def touch(self, chain: _Chain) -> Equations:
-        a, b = chain.left, chain.right
-        return tangency(self.shape(a), self.shape(b), self.regions.outwards[a] == self.regions.outwards[b])
+    def touch(self, chain: Chain) -> Equations:
+        return chains.touch(self.regions, chain.left, chain.right)
 
-    def tell_touching(self, chain: _Chain) -> None:
+    def tell_touching(self, chain: Chain) -> None:
         """Whether the faces beside a chain go on smoothly into each other."""
-        place = self.regions.vertices[chain.vertices[len(chain.vertices) // 2]]
-        if len(chain.vertices) == 2:
-            other = self.regions.vertices[chain.vertices[0]]
-            place = add(other, add(place, other, -1), 0.5)
-        (_, a), (_, b) = (self.shape(region).see(place) for region in (chain.left, chain.right))
-        same_way = self.regions.outwards[chain.left] == self.regions.outwards[chain.right]
-        if (dot(a, b) if same_way else -dot(a, b)) < CROSSING:
-            return
-        chain.touching = True
-        found = meet(self.contact(chain), place)
-        chain.touching = found is not None and found[1] < SLOPPY and distance(found[0], place) < 3 * self.voxel
+        place = chains.middle(self.regions, chain)
+        chain.touching = chains.contact(self.regions, chain.left, chain.right, place, 3 * self.voxel) is not None
 
     def solve(self, equations: Sequence[Equations], start: Vector, lost: str) -> Vector:
         check(self.progress, self.done)
@@ -244,7 +187,7 @@ class _Maker:
                         abs(self.shape(region).see(place)[0]) <= close for region in beside):
                     corners[corner] = place
 
-    def is_point(self, chain: _Chain) -> bool:
+    def is_point(self, chain: Chain) -> bool:
         """Whether a chain has no length: where four faces meet in a point, the mesh has two corners beside each
         other."""
         start, end = chain.vertices[0], chain.vertices[-1]
@@ -252,7 +195,7 @@ class _Maker:
             distance(self.regions.vertices[vertex], self.regions.vertices[start]) < 4 * self.voxel
             for vertex in chain.vertices)
 
-    def samples(self, chain: _Chain, start: Vector, end: Vector) -> list[Vector]:
+    def samples(self, chain: Chain, start: Vector, end: Vector) -> list[Vector]:
         """Points of the edge from end to end, in order: the mesh's own and some between them."""
         equations = self.contact(chain)
         mesh = [self.regions.vertices[vertex] for vertex in chain.vertices]
@@ -271,7 +214,7 @@ class _Maker:
             found = _forwards(found, end)
         return found + [end]
 
-    def edge(self, chain: _Chain, corners: list[Vector]) -> Edge:
+    def edge(self, chain: Chain, corners: list[Vector]) -> Edge:
         """The curve of a chain."""
         start, end = self.corner_of[chain.vertices[0]], self.corner_of[chain.vertices[-1]]
         points = self.samples(chain, corners[start], corners[end])
@@ -285,7 +228,7 @@ class _Maker:
             return Edge(start, end, centre, axis if turn > 0 else (-axis[0], -axis[1], -axis[2]), radius)
         return self.curve(chain, start, end, points)
 
-    def curve(self, chain: _Chain, start: int, end: int, points: list[Vector]) -> Edge:
+    def curve(self, chain: Chain, start: int, end: int, points: list[Vector]) -> Edge:
         """A curve of cubics, finer and finer until their middles are on it."""
         if chain.touching:
             raise self.fail("curve touched")
@@ -308,7 +251,7 @@ class _Maker:
             points.insert(k + 1, true)
         return Edge(start, end, points=points, directions=directions)
 
-    def direction(self, chain: _Chain, place: Vector, way: Vector) -> Vector:
+    def direction(self, chain: Chain, place: Vector, way: Vector) -> Vector:
         """Where the edge goes at a place, about along a way; that way itself where the faces are tangent."""
         along = cross(self.shape(chain.left).see(place)[1], self.shape(chain.right).see(place)[1])
         if math.hypot(*along) < TANGENT:
@@ -317,7 +260,6 @@ class _Maker:
 
     def make(self, progress: Report) -> Brep:
         self.progress = progress
-        self.find_chains()
         for chain in self.chains:
             check(progress, 0.0)
             self.tell_touching(chain)
@@ -423,8 +365,8 @@ def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = N
         x, y, z = regions.unknown[0]
         percent = min(math.floor(1000 * regions.known_share) / 10, 99.9)
         raise NotAnalytic(Said("unknown surface", percent=percent, x=x, y=y, z=z), regions.known_share)
-    maker = _Maker(regions, voxel)
     try:
-        return maker.make(share(progress, 0.5, 1))
+        strips.mend(regions, surface, voxel, moves, share(progress, 0.5, 0.6))
+        return _Maker(regions, voxel).make(share(progress, 0.6, 1))
     except LookupError:  # borders that do not lead on
-        raise maker.fail("faces apart") from None
+        raise NotAnalytic(Said("faces apart"), regions.known_share) from None

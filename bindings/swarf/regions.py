@@ -66,6 +66,20 @@ class Regions:
     shell: list[int]  #: pieces of surface that hang together
     known_share: float  #: of the area, on planes, cylinders, cones, spheres and tori
     unknown: list[Vector]  #: places where none of them is
+    directions: float  #: by how much directions of one shape may differ
+
+    def same(self, one: Optional[Shape], other: Optional[Shape]) -> bool:
+        """Whether two shapes are one, but for the digits of the program."""
+        return one is not None and other is not None and one.is_same(other, SAME, self.directions)
+
+    def compact(self) -> None:
+        """Leave out regions without triangles."""
+        kept = sorted(set(self.region_of))
+        number = {region: k for k, region in enumerate(kept)}
+        self.region_of[:] = [number[region] for region in self.region_of]
+        self.shape[:] = [self.shape[region] for region in kept]
+        self.outwards[:] = [self.outwards[region] for region in kept]
+        self.shell[:] = [self.shell[region] for region in kept]
 
     def borders(self) -> dict[tuple[int, int], tuple[int, int]]:
         """Half-edges between regions: (the region on the left, that on the right)."""
@@ -311,4 +325,5 @@ def find(mesh: Mesh, surface: Surface, voxel: float, moves: Optional[int] = None
     if unknown:
         shapes, outwards = [], []
     return Regions(parts.vertices, parts.triangles, region_of, parts.across, shapes, outwards,
-                   _shells(region_of, parts.across, len(members)), 1 - lost / whole if whole > 0 else 0.0, unknown)
+                   _shells(region_of, parts.across, len(members)), 1 - lost / whole if whole > 0 else 0.0, unknown,
+                   parts.directions)
