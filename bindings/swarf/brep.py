@@ -7,23 +7,22 @@ edges in which they meet.
     mesh vertices where more chains end         corners
 
 The mesh tells only what is beside what, and of what it is too coarse for (see strips) the surface does; where corners
-and edges lie is solved on the shapes. Faces that go on smoothly
-into each other have no edge in the mesh: there the chain wanders by about a voxel, and their line of contact is
-solved."""
+and edges lie is solved on the shapes. Faces that go on smoothly into each other have no edge in the mesh: there the
+chain wanders by about a voxel, and their line of contact is solved. What comes out is held against the surface."""
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from itertools import product
 from typing import Iterator, Optional, Sequence
 
-from . import chains, strips
+from . import chains, strips, truth
 from ._native import Mesh, Surface
 from .chains import SLOPPY, Chain
 from .progress import Report, check, share
-from .regions import NotAnalytic, Regions, find
+from .regions import NEAR, NotAnalytic, Regions, find
 from .shapes import (CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet,
                      on, unit)
+from .topology import Brep, Edge, Face
 from .wording import Said
 
 __all__ = ["Brep", "Edge", "Face", "NotAnalytic", "make"]
@@ -48,42 +47,6 @@ HALF = 0.75
 
 #: Sine of the angle between faces below which their normals do not tell where their edge goes.
 TANGENT = 1e-4
-
-
-@dataclass
-class Edge:
-    """From corner to corner: a line; a circle about ``centre``, counter-clockwise seen against ``axis``; or, where
-    ``axis`` is None and there are points, a smooth curve through them with those directions."""
-
-    start: int
-    end: int
-    centre: Optional[Vector] = None
-    axis: Optional[Vector] = None
-    radius: float = 0.0
-    points: list[Vector] = field(default_factory=list)
-    directions: list[Vector] = field(default_factory=list)
-
-
-@dataclass
-class Face:
-    """Part of a shape; ``outwards``: its natural normal (a plane's own, away from an axis or a tube) leaves the
-    material. Each loop has the face on its left seen from outside: numbers of edges and whether they go forwards."""
-
-    shape: Shape
-    outwards: bool
-    loops: list[list[tuple[int, bool]]]
-
-
-@dataclass
-class Brep:
-    """Solids as faces, edges and corners; ``shells``: faces that hang together; ``inexact_mm``: by how much faces miss
-    each other at edges, for the digits of the program."""
-
-    corners: list[Vector]
-    edges: list[Edge]
-    faces: list[Face]
-    shells: list[list[int]]
-    inexact_mm: float
 
 
 class _Maker:
@@ -367,6 +330,11 @@ def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = N
         raise NotAnalytic(Said("unknown surface", percent=percent, x=x, y=y, z=z), regions.known_share)
     try:
         strips.mend(regions, surface, voxel, moves, share(progress, 0.5, 0.6))
-        return _Maker(regions, voxel).make(share(progress, 0.6, 1))
+        made = _Maker(regions, voxel).make(share(progress, 0.6, 0.9))
     except LookupError:  # borders that do not lead on
         raise NotAnalytic(Said("faces apart"), regions.known_share) from None
+    made.off_mm, made.off_at = truth.measure(made, regions, surface, voxel, moves, share(progress, 0.9, 1))
+    if made.off_mm > NEAR * voxel:
+        x, y, z = made.off_at
+        raise NotAnalytic(Said("solid off", off=made.off_mm, x=x, y=y, z=z), regions.known_share)
+    return made

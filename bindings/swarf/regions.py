@@ -67,6 +67,7 @@ class Regions:
     known_share: float  #: of the area, on planes, cylinders, cones, spheres and tori
     unknown: list[Vector]  #: places where none of them is
     directions: float  #: by how much directions of one shape may differ
+    mended: list[tuple[int, Shape]]  #: triangles that were given to a neighbour, and the shape that the surface has
 
     def same(self, one: Optional[Shape], other: Optional[Shape]) -> bool:
         """Whether two shapes are one, but for the digits of the program."""
@@ -205,6 +206,12 @@ class _Parts:
                 return True
         return False
 
+    def given(self, own: list[int]) -> list[tuple[int, Shape]]:
+        """Triangles that have another shape than their own, which is known."""
+        shapes = ((triangle, self.shapes[number]) for triangle, number in enumerate(own)
+                  if number != self.shape_of[triangle])
+        return [(triangle, shape) for triangle, shape in shapes if shape is not None]
+
     def border(self, region: int, region_of: list[int], triangles: list[int]) -> dict[int, float]:
         """Length of a region's border by the shape beyond it."""
         border: dict[int, float] = {}
@@ -298,6 +305,7 @@ def find(mesh: Mesh, surface: Surface, voxel: float, moves: Optional[int] = None
     ticks.fraction = 0.5
     parts = _Parts(mesh, rows, voxel, ticks)
     whole = sum(parts.area)
+    own = list(parts.shape_of)
     for number in range(0 if parts.hopeless() else ROUNDS):
         ticks.fraction = 0.5 + 0.5 * number / ROUNDS
         check(progress, ticks.fraction)
@@ -326,4 +334,4 @@ def find(mesh: Mesh, surface: Surface, voxel: float, moves: Optional[int] = None
         shapes, outwards = [], []
     return Regions(parts.vertices, parts.triangles, region_of, parts.across, shapes, outwards,
                    _shells(region_of, parts.across, len(members)), 1 - lost / whole if whole > 0 else 0.0, unknown,
-                   parts.directions)
+                   parts.directions, parts.given(own))

@@ -99,7 +99,8 @@ def make(
         "memory_peak_mb": round(_native.memory_peak() / 1e6, 3),
         "bounding_box": None if box is None else {"lo": list(box[0]), "hi": list(box[1])},
         "mesh": _mesh(result),
-        "solids": [{"file": solid.path, "faces": solid.faces, "facets_because": solid.reason}
+        "solids": [{"file": solid.path, "faces": solid.faces, "facets_because": solid.reason,
+                    "off_mm": solid.off_mm}
                    for solid in result.solids],
         "findings": _findings(job, names, simulation),
         "notes": list(job.notes),

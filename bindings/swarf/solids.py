@@ -8,13 +8,14 @@ from typing import Optional
 
 from . import brep, step
 from ._native import Mesh, Stock, Surface
+from .chains import SLOPPY
 from .parts import largest, pieces
 from .progress import Report, check, share
 from .records import rows
 from .shapes import PLANE, Shape, add, cross, unit
 from .wording import Said
 
-__all__ = ["SUFFIXES", "Written", "facets", "write", "write_facets"]
+__all__ = ["SUFFIXES", "Written", "facets", "missing", "write", "write_facets"]
 
 SUFFIXES = (".step", ".stp")
 
@@ -32,11 +33,21 @@ FACETS_MAX = 100000
 
 @dataclass
 class Written:
-    """A file that was written. ``reason``: why it is of facets, None where its faces are as they were cut."""
+    """A file that was written. ``reason``: why it is of facets, None where its faces are as they were cut; then they
+    are off by ``off_mm`` at most, and ``missing`` tells where that is more than the program's digits."""
 
     path: str
     faces: int
     reason: Optional[str] = None
+    off_mm: float = 0.0
+    missing: Optional[Said] = None
+
+    @property
+    def note(self) -> Optional[str]:
+        """What is not as it was cut, in words."""
+        if self.reason:
+            return f"{self.faces} facets, no faces as they were cut: {self.reason}"
+        return self.missing
 
 
 def facets(mesh: Mesh, progress: Report = None) -> brep.Brep:
@@ -84,11 +95,19 @@ def why(problem: ValueError) -> str:
     return said if isinstance(said, Said) else str(problem)
 
 
+def missing(made: brep.Brep) -> Optional[Said]:
+    """Where a solid of faces as they were cut lacks a narrow one; None where it has all of them."""
+    if made.off_mm <= SLOPPY:
+        return None
+    x, y, z = made.off_at
+    return Said("narrow missing", off=made.off_mm, x=x, y=y, z=z)
+
+
 def _written(made: brep.Brep, path: str, reason: Optional[str], progress: Report) -> Written:
     step.write(made, path, progress=progress)
     if progress is not None:
         progress(1.0)  # it is there: too late to cancel
-    return Written(path, len(made.faces), reason)
+    return Written(path, len(made.faces), reason, made.off_mm, missing(made))
 
 
 def write_facets(mesh: Mesh, path: str, reason: str, progress: Report = None) -> Written:

@@ -34,24 +34,14 @@ def _string(text: str) -> str:
     return "".join(map(letter, text))
 
 
-def _along(edge: Edge, brep: Brep) -> list[Vector]:
-    """Some points of an edge."""
-    start, end = brep.corners[edge.start], brep.corners[edge.end]
-    if edge.axis is None or edge.centre is None:
-        return [start, *edge.points, end]
-    u = add(start, edge.centre, -1)
-    v, last = cross(edge.axis, u), add(end, edge.centre, -1)
-    turn = 2 * math.pi if edge.start == edge.end else math.atan2(dot(last, v), dot(last, u)) % (2 * math.pi)
-    return [add(add(edge.centre, u, math.cos(turn * k / 8)), v, math.sin(turn * k / 8)) for k in range(9)]
-
-
 def _poles(face: Face, edges: list[Edge], brep: Brep) -> Vector:
     """Axis of a sphere whose poles are far from the edges of a face and, for one smaller than a half, outside of it;
     where one circle alone bounds it, that circle's."""
     first = edges[0]
     if len(edges) == 1 and first.axis is not None:
         return first.axis
-    ways = [unit(add(place, face.shape.point, -1)) for edge in edges for place in _along(edge, brep)]
+    ways = [unit(add(place, face.shape.point, -1)) for edge in edges
+            for place, _ in brep.along(edge, 8)]
     middle = unit((sum(way[0] for way in ways), sum(way[1] for way in ways), sum(way[2] for way in ways)))
     across = cross(middle, (1.0, 0.0, 0.0) if abs(middle[0]) < 0.6 else (0.0, 1.0, 0.0))
     u, v = unit(across), cross(middle, unit(across))

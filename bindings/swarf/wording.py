@@ -100,6 +100,8 @@ FORMS = {
     "corner lost": "a corner is not found near ({x:.3f}, {y:.3f}, {z:.3f})",
     "curve touched": "two faces touch along a curve that is no line and no circle",
     "curve rough": "an edge is no smooth curve near ({x:.3f}, {y:.3f}, {z:.3f})",
+    "solid off": "it would be off by {off:.3g} mm near ({x:.3f}, {y:.3f}, {z:.3f})",
+    "narrow missing": "a narrow face is missing near ({x:.3f}, {y:.3f}, {z:.3f}); there it is off by {off:.2g} mm",
     "face without edge": "a face without any edge",
     "face is point": "a face that is a point",
     "edge twice": "an edge is used twice",

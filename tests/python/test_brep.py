@@ -91,7 +91,7 @@ def test_solids(tool, moves, faces, edges, tmp_path):
     made = brep.make(mesh, surface, VOXEL)
     kinds = [face.shape.kind for face in made.faces]
     assert {kind: kinds.count(kind) for kind in kinds} == faces
-    assert len(made.edges) == edges and made.inexact_mm < 1e-9 and len(made.shells) == 1
+    assert len(made.edges) == edges and made.inexact_mm < 1e-9 and len(made.shells) == 1 and made.off_mm < 2e-4
     for face in made.faces:  # ends and middles of edges are on both faces
         for number, _ in (one for loop in face.loops for one in loop):
             edge = made.edges[number]
@@ -118,6 +118,7 @@ def test_a_bend_narrower_than_a_voxel(bend_deg, voxel):
     made = brep.make(mesh, surface, voxel)
     kinds = [face.shape.kind for face in made.faces]
     assert (kinds.count(PLANE), kinds.count(CYLINDER), len(kinds), len(made.edges)) == (11, 3, 14, 33)
+    assert made.off_mm < 1e-5
     ends = [(30, 10), (30 + 5 * math.sin(slope), 15 - 5 * math.cos(slope))]
     for x, y in ends:
         for z in (-4, 0):
@@ -129,7 +130,7 @@ def test_a_ring_of_short_lines(count, voxel):
     """Outside planes and cylinders in turn, inside planes: at 60 they are 0.2 to 0.9 mm wide."""
     turns = [2 * math.pi * k / count for k in range(count + 1)]
     mesh, surface = cut("flat:d=10,l=20", (38, 20, 5), *((30 + 8 * math.cos(turn), 20 + 8 * math.sin(turn), -4)
-                                                        for turn in turns), voxel=voxel)
+                                                         for turn in turns), voxel=voxel)
     made = brep.make(mesh, surface, voxel)
     kinds = [face.shape.kind for face in made.faces]
     assert (kinds.count(PLANE), kinds.count(CYLINDER), len(kinds)) == (2 * count + 8, count, 3 * count + 8)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """STEP files: faces as they were cut where these are known, else facets, and the reason."""
 import json
+import math
 import os
 import random
 import re
@@ -9,7 +10,7 @@ import pytest
 
 import swarf
 from conftest import GCODE
-from swarf import solids
+from swarf import brep, regions, solids, strips
 from swarf.cli import main
 from swarf.shapes import add, cross, dot
 
@@ -80,7 +81,28 @@ def test_faces_as_they_were_cut(tmp_path, capsys):
     planes, cylinders = text.count("=PLANE("), text.count("=CYLINDRICAL_SURFACE(")
     assert faces == planes + cylinders and cylinders > 0
     assert json.loads((tmp_path / "report.json").read_text())["solids"] == [
-        {"file": names[0], "faces": faces, "facets_because": None}]
+        {"file": names[0], "faces": faces, "facets_because": None, "off_mm": pytest.approx(0, abs=1e-6)}]
+
+
+def test_a_missing_face_is_told(tmp_path, capsys, monkeypatch):
+    """The cylinder of a bend left out on purpose: the planes beside it meet farther out, by r (1 / cos(bend / 2) - 1)
+    at their edge, and it is less beside that."""
+    monkeypatch.setattr(strips, "mend", lambda *arguments: None)
+    monkeypatch.setattr(regions, "NARROW", 2.0)
+    program, bend = tmp_path / "bend.nc", math.radians(5)
+    program.write_text("G21 G90\nT1 M6\nS1000 M3\nG0 X10 Y15 Z5\nG1 Z-4 F100\nG1 X30\n"
+                       f"G1 X50 Y{15 + 20 * math.tan(bend):.6f}\nG0 Z5\nM30\n")
+    words = ["simulate", str(program), "--stock", "box:0,0,-10,60,40,0", "--tool", "1=flat:d=10,l=20", "--voxel", "0.5",
+             "--output", str(tmp_path / "part.step"), "--report", str(tmp_path / "report.json")]
+    assert main(words) == 0
+    most = 5 * (1 / math.cos(bend / 2) - 1)
+    (made,) = json.loads((tmp_path / "report.json").read_text())["solids"]
+    assert made["facets_because"] is None and most / 2 < made["off_mm"] < most
+    told = capsys.readouterr().err
+    assert re.search(r"note: .*part.step: a narrow face is missing near \(30.\d+, 10.\d+, .* off by 0.00\d+ mm", told)
+    monkeypatch.setattr(brep, "NEAR", 0.005)  # what is farther off than that is refused
+    assert main(words) == 0
+    assert "it would be off by 0.00" in capsys.readouterr().err
 
 
 def test_facets_and_why(tmp_path, capsys):

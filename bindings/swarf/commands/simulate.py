@@ -86,8 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
     told = [f"warning: line {piece.line}: {piece.text}" for piece in result.loose.pieces]
     if result.loose.crumbs:
         told.append(f"note: {result.loose.crumbs} crumbs of a few voxels are loose")
-    told += [f"note: {solid.path}: {solid.faces} facets, no faces as they were cut: {solid.reason}"
-             for solid in result.solids if solid.reason]
+    told += [f"note: {solid.path}: {solid.note}" for solid in result.solids if solid.note]
     cuts = getattr(result.contour, "intersections_left", 0)
     if cuts:
         told.append(f"warning: {cuts} pairs of triangles cut each other: the surface touches itself there")

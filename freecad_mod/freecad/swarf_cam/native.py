@@ -263,7 +263,7 @@ def _exact(data, stock_file, progress=None):
 class Analytic:
     """A STEP file with faces as they were cut. share: part of the area on planes, cylinders, cones, spheres and tori,
     None where it was not measured; reason: why there is no file, None when there is; volume_mm3 and area_mm2 of the
-    mesh it was made of, which is within error_mm; faces: their number."""
+    mesh it was made of, which is within error_mm; faces: their number; note: what is told of them."""
 
     share: Optional[float]
     reason: Optional[str] = None
@@ -271,6 +271,7 @@ class Analytic:
     area_mm2: float = 0.0
     error_mm: float = 0.0
     faces: int = 0
+    note: Optional[str] = None
 
 
 def export_analytic(data, stock_file, path, largest=False, progress=None):
@@ -295,7 +296,7 @@ def export_analytic(data, stock_file, path, largest=False, progress=None):
     except ValueError as problem:  # a piece that is no closed mesh: facets show what there is
         return Analytic(None, solids.why(problem))
     step.write(made, path, progress=share(0.9, 1))
-    return Analytic(1.0, None, mesh.volume, mesh.area, error, len(made.faces))
+    return Analytic(1.0, None, mesh.volume, mesh.area, error, len(made.faces), solids.missing(made))
 
 
 def export(data, stock_file, path, error_mm=None, budget=0, colour=None, tolerance_mm=0.05, allowance_mm=0.0,

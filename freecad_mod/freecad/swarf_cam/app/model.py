@@ -148,6 +148,8 @@ class Export:
                     "Swarf",
                     "Swarf: the shape has {0} faces as they were cut: planes, cylinders, cones, spheres, tori\n"
                 ).format(self.analytic.faces))
+                if self.analytic.note:
+                    FreeCAD.Console.PrintWarning("Swarf: %s\n" % wording.say(self.analytic.note))
                 return shape
             self._run_facets()  # a rare one, and known only here
         share, reason = self.analytic.share, wording.say(self.analytic.reason)

@@ -1006,6 +1006,10 @@
             <translation>eine Vorschubbewegung ohne Vorschub</translation>
         </message>
         <message>
+            <source>a narrow face is missing near ({x:.3f}, {y:.3f}, {z:.3f}); there it is off by {off:.2g} mm</source>
+            <translation>eine schmale Fläche fehlt nahe bei ({x:.3f}; {y:.3f}; {z:.3f}); dort weicht er um {off:.2g} mm ab</translation>
+        </message>
+        <message>
             <source>a piece of {volume:.4g} mm3 at {x:.4g}, {y:.4g}, {z:.4g} is loose; it was before the program began</source>
             <translation>ein Stück von {volume:.4g} mm³ bei {x:.4g}; {y:.4g}; {z:.4g} ist lose; es war es schon vor dem Programm</translation>
         </message>
@@ -1128,6 +1132,10 @@
         <message>
             <source>it has faces of more than {most} shapes</source>
             <translation>es hat Flächen von mehr als {most} Formen</translation>
+        </message>
+        <message>
+            <source>it would be off by {off:.3g} mm near ({x:.3f}, {y:.3f}, {z:.3f})</source>
+            <translation>er wiche nahe bei ({x:.3f}; {y:.3f}; {z:.3f}) um {off:.3g} mm ab</translation>
         </message>
         <message>
             <source>its faces do not hang together</source>
