@@ -201,9 +201,27 @@ static inline const contour_block *swarf_contour_block_near(const contour *work,
     const int32_t away = (ijk[0] ^ near->ijk[0]) | (ijk[1] ^ near->ijk[1]) | (ijk[2] ^ near->ijk[2]);
     return away & ~7 ? swarf_contour_block_at(work, ijk) : near;
 }
+/** How many bits of a mask are set below one: what __builtin_popcountll() is a call for where the processor need not
+ *  have it. */
+static inline unsigned swarf_contour_below(uint64_t mask, int bit)
+{
+    uint64_t x = mask & ((UINT64_C(1) << bit) - 1);
+    x -= x >> 1 & UINT64_C(0x5555555555555555);
+    x = (x & UINT64_C(0x3333333333333333)) + (x >> 2 & UINT64_C(0x3333333333333333));
+    x = (x + (x >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
+    return (unsigned)(x * UINT64_C(0x0101010101010101) >> 56);
+}
 /** The crossing of an edge, most often one of the block `near`; NULL where there is none. */
-const contour_crossing *swarf_contour_crossing(const contour *work, const contour_block *near, const int32_t voxel[3],
-                                               int axis);
+static inline const contour_crossing *swarf_contour_crossing(const contour *work, const contour_block *near,
+                                                             const int32_t voxel[3], int axis)
+{
+    const contour_block *block = swarf_contour_block_near(work, near, voxel);
+    const int bit = (voxel[1] & 7) * 8 + (voxel[2] & 7);
+    if (!block) return NULL;
+    const uint64_t word = block->edge_mask[axis][voxel[0] & 7];
+    if (!(word >> bit & 1)) return NULL;
+    return block->crossings + block->edge_rank[axis][voxel[0] & 7] + swarf_contour_below(word, bit);
+}
 /** What the exact surface can be in the eight parts of a block, and in their own eight parts, gathered when first asked
  *  for: the smaller the box, the fewer moves a point has to look at. */
 typedef struct contour_near {

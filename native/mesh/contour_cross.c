@@ -108,7 +108,10 @@ void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values
                 float *to = values + ((start[part[0]] + x) * SWARF_HALO + start[part[1]] + y) * SWARF_HALO;
                 const int from = (first[part[0]] + x) * 64 + (first[part[1]] + y) * 8;
                 to[0] = leaf[0] ? leaf[0][from + 7] : tile[0];
-                for (int z = 0; z < 8; z++) to[1 + z] = leaf[1] ? leaf[1][from + z] : tile[1];
+                if (leaf[1])
+                    memcpy(to + 1, leaf[1] + from, 8 * sizeof *to);
+                else
+                    for (int z = 0; z < 8; z++) to[1 + z] = tile[1];
                 for (int z = 0; z < 2; z++) to[9 + z] = leaf[2] ? leaf[2][from + z] : tile[2];
             }
     }
@@ -221,24 +224,26 @@ static swarf_status cross_edges(const contour *work, contour_block *block, const
  * beside a face at that distance. In voxels. */
 static float find_unseen(const float values[SWARF_HALO * SWARF_HALO * SWARF_HALO], double voxel)
 {
-    enum { ROWS = 10 }; /* one about the block */
-    unsigned inside[ROWS][ROWS];
-    for (int x = 0; x < ROWS; x++)
+    enum { ROWS = 10 };      /* one about the block */
+    unsigned about[ROWS][8]; /* with those beside them along y and z */
+    for (int x = 0; x < ROWS; x++) {
+        unsigned inside[ROWS];
         for (int y = 0; y < ROWS; y++) {
             const float *row = values + (x * SWARF_HALO + y) * SWARF_HALO;
             unsigned signs = 0;
             for (int z = 0; z < ROWS; z++) signs |= (unsigned)(row[z] < 0) << z;
-            inside[x][y] = signs | signs << 1 | signs >> 1;
+            inside[y] = signs | signs << 1 | signs >> 1;
         }
+        for (int y = 0; y < 8; y++) about[x][y] = inside[y] | inside[y + 1] | inside[y + 2];
+    }
     const float reach = (float)(0.5 * voxel), scale = (float)(1 / voxel);
     float sum = 0;
     for (int x = 0; x < 8; x++)
         for (int y = 0; y < 8; y++) {
             const float *row = values + ((x + 1) * SWARF_HALO + y + 1) * SWARF_HALO + 1;
-            unsigned seen = 0;
-            for (int c = 0; c < 9; c++) seen |= inside[x + c / 3][y + c % 3];
-            for (int z = 0; z < 8; z++)
-                if (row[z] < reach && !(seen >> (z + 1) & 1)) sum += 0.5f - row[z] * scale;
+            const unsigned seen = (about[x][y] | about[x + 1][y] | about[x + 2][y]) >> 1 & 0xff;
+            for (int z = 0; z < 8 && seen != 0xff; z++)
+                if (row[z] < reach && !(seen >> z & 1)) sum += 0.5f - row[z] * scale;
         }
     return sum;
 }
@@ -277,18 +282,6 @@ swarf_status swarf_contour_cross(contour *work, contour_block *block)
     const swarf_status status = cross_edges(work, block, values, &near);
     swarf_contour_near_free(&near);
     return status;
-}
-
-const contour_crossing *swarf_contour_crossing(const contour *work, const contour_block *near, const int32_t voxel[3],
-                                               int axis)
-{
-    const contour_block *block = swarf_contour_block_near(work, near, voxel);
-    const int bit = (voxel[1] & 7) * 8 + (voxel[2] & 7);
-    if (!block) return NULL;
-    const uint64_t word = block->edge_mask[axis][voxel[0] & 7];
-    if (!(word >> bit & 1)) return NULL;
-    return block->crossings + block->edge_rank[axis][voxel[0] & 7] +
-           __builtin_popcountll(word & ((UINT64_C(1) << bit) - 1));
 }
 
 void swarf_contour_block_free(contour_block *block)

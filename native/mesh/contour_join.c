@@ -27,8 +27,7 @@ static int find_corner(const contour *work, const contour_block *near, const int
     const contour_block *block = swarf_contour_block_near(work, near, cell);
     const int x = cell[0] & 7, bit = (cell[1] & 7) * 8 + (cell[2] & 7);
     if (!block || !(block->cell_mask[x] >> bit & 1)) return 0;
-    const contour_cell *found =
-        block->cells + block->cell_rank[x] + __builtin_popcountll(block->cell_mask[x] & ((UINT64_C(1) << bit) - 1));
+    const contour_cell *found = block->cells + block->cell_rank[x] + swarf_contour_below(block->cell_mask[x], bit);
     const contour_case *joined = &work->table.entry[found->config][found->flip];
     uint32_t local = found->first + joined->of_edge[axis * 4 + back[0] * 2 + back[1]], left = local;
     out->tiled = block->tile && block->tile[local] & SWARF_TILED;

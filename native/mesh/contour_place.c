@@ -44,14 +44,9 @@ static int is_flipped(placing *p, int config, const int at[3])
     return p->work->table.entry[behind][0].twice_on_face == (face ^ 1);
 }
 
-/* Where an edge of a cell starts, from the cell. */
-static void edge_offset(int edge, int out[3])
-{
-    const int axis = edge / 4;
-    out[axis] = 0;
-    out[(axis + 1) % 3] = edge >> 1 & 1;
-    out[(axis + 2) % 3] = edge & 1;
-}
+/* Where the edges of a cell start, from the cell. */
+static const int edge_offset[12][3] = {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0, 1, 1}, {0, 0, 0}, {1, 0, 0},
+                                       {0, 0, 1}, {1, 0, 1}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}};
 
 /* Gather the crossings of one cycle. */
 static void gather(const placing *p, const int at[3], const contour_case *joined, int cycle, contour_polygon *out)
@@ -59,9 +54,8 @@ static void gather(const placing *p, const int at[3], const contour_case *joined
     out->count = 0;
     for (unsigned left = joined->edges[cycle]; left; left &= left - 1) {
         const int edge = __builtin_ctz(left), axis = edge / 4;
-        int offset[3];
+        const int *offset = edge_offset[edge];
         int32_t voxel[3];
-        edge_offset(edge, offset);
         for (int k = 0; k < 3; k++) voxel[k] = p->block->ijk[k] + at[k] + offset[k];
         const contour_crossing *crossing = swarf_contour_crossing(p->work, p->block, voxel, axis);
         if (!crossing) continue; /* beyond the layout: the mesh will be found open */
@@ -139,9 +133,8 @@ static void make_exact(contour_polygon *polygon, const swarf_surface_near *near,
     for (int i = 0; i < polygon->count; i++) {
         if (polygon->move[i] != SWARF_BY_FLAT_FIELD) continue;
         const int axis = polygon->edge[i] / 4;
-        int offset[3];
+        const int *offset = edge_offset[polygon->edge[i]];
         double a[3];
-        edge_offset(polygon->edge[i], offset);
         for (int k = 0; k < 3; k++) a[k] = polygon->origin[k] + offset[k] * polygon->voxel;
         const int outwards = config >> (offset[0] * 4 + offset[1] * 2 + offset[2]) & 1;
         contour_crossing crossing = {.t = (float)polygon->point[i][axis], .move = SWARF_BY_FIELD};

@@ -97,9 +97,8 @@ static int lie_on(const tiling *t, const contour_block *block, const int lo[3], 
         const uint64_t all = block->cell_mask[x], word = all & within;
         if (word & (~block->flat_mask[x] | block->keep_mask[x])) return 0;
         for (uint64_t left = word; left; left &= left - 1) {
-            const uint64_t before = (left & -left) - 1;
-            const float *p =
-                block->vertices[block->cells[block->cell_rank[x] + __builtin_popcountll(all & before)].first].xyz;
+            const unsigned cell = block->cell_rank[x] + swarf_contour_below(all, __builtin_ctzll(left));
+            const float *p = block->vertices[block->cells[cell].first].xyz;
             double away = 0;
             for (int k = 0; k < 3; k++) away += plane->normal[k] * ((double)p[k] - plane->point[k]);
             if (!(fabs(away) <= t->flat)) return 0;
@@ -152,7 +151,7 @@ static int list_cells(const contour_block *block, const int at[3], int edge, cel
                 out->bit = __builtin_ctzll(left);
             }
             out->vertex[out->count++] =
-                block->cells[block->cell_rank[x] + __builtin_popcountll(all & ((left & -left) - 1))].first;
+                block->cells[block->cell_rank[x] + swarf_contour_below(all, __builtin_ctzll(left))].first;
         }
     }
     return out->count > 1;

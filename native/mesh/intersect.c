@@ -33,12 +33,20 @@ typedef struct key {
     uint32_t facet;
 } key;
 
+/* A facet, all that pairs are decided by. */
+typedef struct sorted {
+    extent box;
+    int32_t p[3][3];
+    uint32_t v[3], facet;
+    int fresh;
+} sorted;
+
 typedef struct tree {
     const swarf_facets *facets;
     const uint8_t *fresh; /* of the facets, NULL: all are */
     double step;
-    key *keys;   /* the facets in order */
-    extent *own; /* of the facets in that order */
+    key *keys; /* the facets in order, until they are there: */
+    sorted *order;
     size_t level_first[LEVELS], level_count[LEVELS];
     int levels;
     extent *boxes;
@@ -162,16 +170,18 @@ static swarf_status make_leaves(void *context, size_t index)
 {
     const tree *t = context;
     for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < t->facets->facet_count; i++) {
-        int32_t p[3][3];
-        corners_of(t, t->keys[i].facet, p);
-        t->own[i] = extent_of(p);
-        const uint8_t fresh = !t->fresh || t->fresh[t->keys[i].facet];
+        sorted *own = &t->order[i];
+        own->facet = t->keys[i].facet;
+        memcpy(own->v, t->facets->facet[own->facet].v, sizeof own->v);
+        corners_of(t, own->facet, own->p);
+        own->box = extent_of(own->p);
+        own->fresh = !t->fresh || t->fresh[own->facet];
         if (i % LEAF == 0) {
-            t->boxes[i / LEAF] = t->own[i];
-            t->any_fresh[i / LEAF] = fresh;
+            t->boxes[i / LEAF] = own->box;
+            t->any_fresh[i / LEAF] = (uint8_t)own->fresh;
         } else {
-            widen(&t->boxes[i / LEAF], &t->own[i]);
-            t->any_fresh[i / LEAF] |= fresh;
+            widen(&t->boxes[i / LEAF], &own->box);
+            t->any_fresh[i / LEAF] |= (uint8_t)own->fresh;
         }
     }
     return SWARF_OK;
@@ -192,11 +202,13 @@ static swarf_status build(tree *t)
         if (nodes <= 1) break;
     }
     t->boxes = malloc((total + 1) * sizeof *t->boxes);
-    t->own = malloc((count + 1) * sizeof *t->own);
+    t->order = malloc((count + 1) * sizeof *t->order);
     t->any_fresh = malloc(total + 1);
-    if (!t->boxes || !t->own || !t->any_fresh)
+    if (!t->boxes || !t->order || !t->any_fresh)
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
     SWARF_TRY(swarf_parallel_for(chunks, make_leaves, t, NULL, 0, 1));
+    free(t->keys);
+    t->keys = NULL;
     for (int level = 1; level < t->levels; level++)
         for (size_t i = 0; i < t->level_count[level]; i++) {
             const size_t child = t->level_first[level - 1] + 2 * i;
@@ -210,26 +222,24 @@ static swarf_status build(tree *t)
     return SWARF_OK;
 }
 
+static swarf_status put_pair(found *out, const sorted *a, const sorted *b)
+{
+    SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
+    out->pairs[out->count++] = (swarf_facet_pair){a->facet, b->facet};
+    return SWARF_OK;
+}
+
 static swarf_status look_at_leaf(const tree *t, size_t own, size_t leaf, found *out)
 {
     const size_t count = t->facets->facet_count;
-    for (size_t i = own * LEAF; i < (own + 1) * LEAF && i < count; i++) {
-        const uint32_t f = t->keys[i].facet;
-        int32_t p[3][3];
-        if (own != leaf && apart(&t->own[i], &t->boxes[leaf])) continue;
-        corners_of(t, f, p);
-        if (own == leaf && !swarf_triangle_has_area(p)) {
-            SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
-            out->pairs[out->count++] = (swarf_facet_pair){f, f};
-        }
-        for (size_t k = own == leaf ? i + 1 : leaf * LEAF; k < (leaf + 1) * LEAF && k < count; k++) {
-            const uint32_t g = t->keys[k].facet;
-            if (apart(&t->own[i], &t->own[k]) || (t->fresh && !t->fresh[f] && !t->fresh[g])) continue;
-            int32_t q[3][3];
-            corners_of(t, g, q);
-            if (!swarf_triangles_meet(p, t->facets->facet[f].v, q, t->facets->facet[g].v)) continue;
-            SWARF_TRY(swarf_array_reserve((void **)&out->pairs, &out->room, out->count + 1, sizeof *out->pairs));
-            out->pairs[out->count++] = (swarf_facet_pair){f, g};
+    const sorted *end = t->order + ((own + 1) * LEAF < count ? (own + 1) * LEAF : count);
+    const sorted *other_end = t->order + ((leaf + 1) * LEAF < count ? (leaf + 1) * LEAF : count);
+    for (const sorted *a = t->order + own * LEAF; a < end; a++) {
+        if (own != leaf && apart(&a->box, &t->boxes[leaf])) continue;
+        if (own == leaf && !swarf_triangle_has_area(a->p)) SWARF_TRY(put_pair(out, a, a));
+        for (const sorted *b = own == leaf ? a + 1 : t->order + leaf * LEAF; b < other_end; b++) {
+            if (apart(&a->box, &b->box) || !(a->fresh | b->fresh)) continue;
+            if (swarf_triangles_meet(a->p, a->v, b->p, b->v)) SWARF_TRY(put_pair(out, a, b));
         }
     }
     return SWARF_OK;
@@ -318,7 +328,7 @@ swarf_status swarf_facets_intersect(const swarf_facets *facets, const uint8_t *f
     free(t.keys);
     free(t.boxes);
     free(t.any_fresh);
-    free(t.own);
+    free(t.order);
     free(t.parts);
     return status;
 }

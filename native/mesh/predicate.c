@@ -17,27 +17,39 @@ static void difference(const int32_t a[3], const int32_t b[3], int64_t out[3])
     for (int k = 0; k < 3; k++) out[k] = (int64_t)a[k] - b[k];
 }
 
-/* Sign of the volume of (b - a, c - a, d - a). */
-static int orient(const int32_t a[3], const int32_t b[3], const int32_t c[3], const int32_t d[3])
+/* (b - a) x (c - a). */
+static void normal_of(const int32_t a[3], const int32_t b[3], const int32_t c[3], int64_t n[3])
 {
-    int64_t u[3], v[3], w[3];
+    int64_t u[3], v[3];
     difference(b, a, u);
     difference(c, a, v);
+    for (int k = 0; k < 3; k++) n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+}
+
+/* Sign of n . (d - a), n being a normal_of() three corners. */
+static int above(const int64_t n[3], const int32_t a[3], const int32_t d[3])
+{
+    int64_t w[3];
     difference(d, a, w);
-    const int64_t n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     const double near = (double)n[0] * (double)w[0] + (double)n[1] * (double)w[1] + (double)n[2] * (double)w[2];
     if (fabs(near) > safe) return near > 0 ? 1 : -1;
     const wide exact = (wide)n[0] * w[0] + (wide)n[1] * w[1] + (wide)n[2] * w[2];
     return exact > 0 ? 1 : exact < 0 ? -1 : 0;
 }
 
+/* Sign of the volume of (b - a, c - a, d - a). */
+static int orient(const int32_t a[3], const int32_t b[3], const int32_t c[3], const int32_t d[3])
+{
+    int64_t n[3];
+    normal_of(a, b, c, n);
+    return above(n, a, d);
+}
+
 /* The coordinate to leave out so that the triangle keeps its area; -1 when it has none. */
 static int flat_axis(const int32_t p[3][3])
 {
-    int64_t u[3], v[3];
-    difference(p[1], p[0], u);
-    difference(p[2], p[0], v);
-    const int64_t n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    int64_t n[3];
+    normal_of(p[0], p[1], p[2], n);
     int best = -1;
     int64_t most = 0;
     for (int k = 0; k < 3; k++)
@@ -76,7 +88,9 @@ static int inside_flat(const int32_t p[3], const int32_t t[3][3], int axis)
 
 static int segment_meets(const int32_t p[3], const int32_t q[3], const int32_t t[3][3], int axis)
 {
-    const int s1 = orient(t[0], t[1], t[2], p), s2 = orient(t[0], t[1], t[2], q);
+    int64_t n[3];
+    normal_of(t[0], t[1], t[2], n);
+    const int s1 = above(n, t[0], p), s2 = above(n, t[0], q);
     if (s1 * s2 > 0) return 0;
     if (s1 == 0 && s2 == 0)
         return inside_flat(p, t, axis) || segments_meet(p, q, t[0], t[1], axis) ||
@@ -89,10 +103,12 @@ static int segment_meets(const int32_t p[3], const int32_t q[3], const int32_t t
  * triangle a. */
 static int on_one_side(const int32_t a[3][3], const int32_t b[3][3], int common)
 {
+    int64_t n[3];
     int side_of_b = 0;
+    normal_of(a[0], a[1], a[2], n);
     for (int k = 0; k < 3; k++) {
         if (k == common) continue;
-        const int own = orient(a[0], a[1], a[2], b[k]);
+        const int own = above(n, a[0], b[k]);
         if (own == 0 || own == -side_of_b) return 0;
         side_of_b = own;
     }
