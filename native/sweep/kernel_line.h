@@ -6,49 +6,71 @@
 
 #include "sweep/kernel_plan.h"
 
-/* The slanted surface left by the rim of a disc on a tilted line, where it turns into the side: an elliptic cylinder
- * that meets the side without an edge. `height`: voxels beyond the disc's middle, outwards. The distance of first order
- * used elsewhere is off there by h^2 / 4 (distance to the seam), so near the seam the conic itself stands for it:
- *     (height^2 / m^2 - (R^2 - w^2)) / (R + |w|)
- * which is the side's own distance R - |w| up to the disc, and right to second order next to the seam. */
-enum { SEAM = 3, STEEP = 6 };
+/* What a disc of radius R sweeps on a tilted line is bounded below by a slanted surface, half an elliptic cylinder with
+ * half axes R and R m / sqrt(1 + m^2). It is convex, so that each of its tangent planes is no farther than the surface
+ * itself, and no nearer inside. Of the planes two are taken: the one above the voxel, which is linear in z (`scale` and
+ * `rest`); and, as that one is steep and far from the nearest point next to the side, within RIM voxels of the side the
+ * one whose normal is that of the similar ellipse through the voxel. */
+enum { RIM = 3 };
+/* Half axes of less than this many voxels are no more than an edge. */
+static const float least_rim = 0.01f;
 
 struct slant {
-    lanes square, linear, rest;
+    lanes scale, rest;
+    lanes across;                   /* (w / R)^2 */
+    float upwards, tilt, half_axis; /* 1 / (R m), the smaller half axis over the greater, the smaller */
 };
 
-/* Of a line of slope m; `seam`: it turns into the side without an edge. */
-INLINE struct slant slant_between(lanes w, float m, float radius, int seam)
+INLINE struct slant slant_between(lanes w2, float m, float im, float radius)
 {
-    const lanes chord2 = maximum(all(0), all(radius * radius) - w * w), chord = root(chord2);
+    const lanes chord2 = maximum(all(0), all(radius * radius) - w2), chord = root(chord2);
     const lanes scale = chord / root(chord2 + m * m * radius * radius);
-    if (!seam) return (struct slant){all(0), scale, scale * chord * m};
-    const lanes aside = maximum(w, all(0) - w);
-    const mask near = less(all(radius - SEAM), aside);
-    const lanes conic = all(1) / ((minimum(aside, all(radius)) + radius) * (m * m));
-    return (struct slant){pick(near, conic, all(0)), pick(near, all(0), scale),
-                          pick(near, all(radius) - aside, scale * chord * m)};
+    const float tilt = m * im;
+    return (struct slant){scale, scale * chord * m, w2 * (1 / (radius * radius)), 1 / (radius * m),
+                          tilt,  radius * tilt};
 }
 
+/* `height`: voxels beyond the disc's middle, outwards. */
 INLINE lanes slant_value(const struct slant *slant, lanes height)
 {
-    const lanes up = maximum(height, all(0));
-    return up * up * slant->square + height * slant->linear - slant->rest;
+    return height * slant->scale - slant->rest;
 }
 
-static __attribute__((noinline)) void cylinder_seam(float m, float radius, lanes s, lanes w, lanes side, float bottom,
-                                                    float length, float low, float high, int top_near, lanes best[8])
+INLINE lanes rim_value(const struct slant *slant, lanes height)
 {
-    const struct slant slant = slant_between(w, m, radius, 1);
-    const lanes at = s * m + bottom;
+    const lanes up = maximum(height, all(0)) * slant->upwards, up2 = up * up;
+    const lanes size = root(slant->across + up2);
+    const lanes length = root(slant->across * (slant->tilt * slant->tilt) + up2);
+    return (size - 1.0f) * size * slant->half_axis / maximum(length, all(1e-6f));
+}
+
+/* Is one of the columns near enough to the side? */
+INLINE int has_rim(lanes w2, float m, float im, float radius)
+{
+    const float inner = radius > RIM ? radius - RIM : 0;
+    return radius * m * im > least_rim && bits(less(all(inner * inner), w2));
+}
+
+/* The greater of a value and that plane's, where it can be and counts. */
+INLINE lanes with_rim(const struct slant *slant, lanes height, lanes value)
+{
+    if (!bits(both(less(all(0), height), less(value, all(SWARF_HALF_WIDTH))))) return value;
+    return maximum(value, rim_value(slant, height));
+}
+
+static __attribute__((noinline)) void cylinder_rim(const struct slant *slant, lanes at, lanes side, float length,
+                                                   float low, float high, int top_near, lanes best[8])
+{
     for (int z = 0; z < 8; z++) {
-        const lanes below = maximum(all(low - (float)z), slant_value(&slant, at - (float)z));
-        if (!top_near) {
-            best[z] = minimum(best[z], maximum(side, below));
-            continue;
+        const lanes under = at - (float)z;
+        lanes value = maximum(maximum(side, all(low - (float)z)), slant_value(slant, under));
+        value = with_rim(slant, under, value);
+        if (top_near) {
+            const lanes over = all((float)z - length) - at;
+            value = maximum(value, maximum(all((float)z - high), slant_value(slant, over)));
+            value = with_rim(slant, over, value);
         }
-        const lanes above = maximum(all((float)z - high), slant_value(&slant, all((float)z - length) - at));
-        best[z] = minimum(best[z], maximum(side, maximum(below, above)));
+        best[z] = minimum(best[z], value);
     }
 }
 
@@ -74,21 +96,17 @@ INLINE void cylinder_line(const swarf_body *body, const swarf_column *c, int32_t
         return;
     }
     const int top_near = low + length - SWARF_HALF_WIDTH < 7; /* of a long cutter it mostly is far above */
-    if (m * m * radius > STEEP && bits(less(all((radius - SEAM) * (radius - SEAM)), w2))) {
-        cylinder_seam(m, radius, s, w, side, bottom, length, low, high, top_near, best);
+    const struct slant slant = slant_between(w2, m, f[COLUMN_IM][i], radius);
+    const lanes at = s * m + bottom;
+    if (has_rim(w2, m, f[COLUMN_IM][i], radius)) {
+        cylinder_rim(&slant, at, side, length, low, high, top_near, best);
         return;
     }
-    const lanes chord2 = maximum(all(0), all(radius * radius) - w2), chord = root(chord2);
-    const lanes scale = chord / root(chord2 + m * m * radius * radius);
-    const lanes under = (s - chord) * m + bottom;
+    const lanes under = at * slant.scale - slant.rest, over = (at + length) * slant.scale + slant.rest;
     for (int z = 0; z < 8; z++) {
-        const lanes value = maximum(maximum(side, all(low - (float)z)), (under - (float)z) * scale);
-        if (!top_near)
-            best[z] = minimum(best[z], value);
-        else {
-            const lanes over = ((s + chord) * m + (bottom + length)) * scale;
-            best[z] = minimum(best[z], maximum(value, maximum(all((float)z - high), scale * (float)z - over)));
-        }
+        const lanes up = slant.scale * (float)z;
+        const lanes value = maximum(maximum(side, all(low - (float)z)), under - up);
+        best[z] = minimum(best[z], top_near ? maximum(value, maximum(all((float)z - high), up - over)) : value);
     }
 }
 
@@ -113,14 +131,18 @@ INLINE lanes strip_square(const struct strip *strip, float z)
 
 /* Where the shaft's top is near: `top` is its height at the line's base, `high` the greatest one. `shaft`: the whole
  * group is above the strip's line. */
-static __attribute__((noinline)) void ball_top(const struct strip *strip, float radius, float m, lanes s, lanes w,
-                                               float top, float high, int shaft, lanes best[8])
+static __attribute__((noinline)) void ball_top(const struct strip *strip, float radius, float m, float im, lanes s,
+                                               lanes w, float top, float high, int shaft, lanes best[8])
 {
     const lanes side = root(strip->beside) - radius, at = s * m + top;
-    struct slant slant = {all(0), all(0), all(far_away)}; /* of level and vertical lines there is none */
-    if (m > 0) slant = slant_between(w, m, radius, m * m * radius > STEEP);
+    const lanes w2 = w * w;
+    const int slanted = m > 0, rim = slanted && has_rim(w2, m, im, radius); /* level and vertical lines have none */
+    const struct slant slant = slant_between(w2, slanted ? m : 1, im, radius);
     for (int z = 0; z < 8; z++) {
-        lanes value = maximum(side, maximum(all((float)z - high), slant_value(&slant, all((float)z) - at)));
+        const lanes over = all((float)z) - at;
+        lanes value = maximum(side, all((float)z - high));
+        if (slanted) value = maximum(value, slant_value(&slant, over));
+        if (rim) value = with_rim(&slant, over, value);
         if (!shaft) {
             const lanes ball = root(maximum(strip_square(strip, (float)z), all(0))) - radius;
             value = pick(less(strip->line, all((float)z)), value, maximum(value, ball));
@@ -155,7 +177,7 @@ INLINE void ball_line(const swarf_body *body, const swarf_column *c, int32_t i, 
                                 .dz = f[COLUMN_DZ][i]};
     if (lowest + length - SWARF_HALF_WIDTH < 7) {
         const float high = centre + length + m * s1 + f[COLUMN_RISE][i];
-        ball_top(&strip, body->radius, m, s, w, centre + length, high, highest < 0, best);
+        ball_top(&strip, body->radius, m, f[COLUMN_IM][i], s, w, centre + length, high, highest < 0, best);
     } else if (highest < 0) {
         for (int z = 0; z < 8; z++) squares[z] = minimum(squares[z], strip.beside);
     } else if (lowest > 7) {

@@ -205,6 +205,23 @@ static void check_cancel(const swarf_cutter *cutter, const swarf_path *paths, ui
     }
 }
 
+/* In the material no voxel is nearer to the surface than its neighbour by more than the way between the two: closed
+ * forms are bounds of the true distance that change no faster, searched distances are scaled to it beside edges.
+ * (Outside, beyond edges, leaves drop moves whose cuts others tell.) */
+static void check_neighbours(swarf_stock *stock, const float *values, int closed_form)
+{
+    float *beside = malloc(SAMPLES * sizeof *beside);
+    if (!beside) exit(2);
+    for (int i = 0; i < SAMPLES; i++) grid_points[i][i % 3] += voxel;
+    CHECK_OK(swarf_stock_sample(stock, grid_points[0], SAMPLES, beside));
+    for (int i = 0; i < SAMPLES; i++) grid_points[i][i % 3] -= voxel;
+    double most = 0;
+    for (int i = 0; i < SAMPLES; i++)
+        if (values[i] <= 0 && beside[i] <= 0) most = fmax(most, fabs((double)values[i] - (double)beside[i]));
+    CHECK_NEAR(most / voxel, 1, closed_form ? 1e-3 : 0.5);
+    free(beside);
+}
+
 static void check_cutter(int index, test_random *random)
 {
     const char *name;
@@ -220,6 +237,7 @@ static void check_cutter(int index, test_random *random)
     const uint64_t hash = hash_of(stock);
     const double volume = volume_of(stock);
     float *values = values_of(stock);
+    check_neighbours(stock, values, index < 2);
     CHECK_OK(swarf_stock_cut(stock, cutter, paths, MOVES, NULL));
     CHECK(hash_of(stock) == hash); /* cutting again changes nothing */
     CHECK(volume_of(stock) == volume);

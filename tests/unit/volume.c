@@ -256,6 +256,31 @@ static void check_helix(test_random *random)
     }
 }
 
+/* A flat end that ramps right through a block leaves half an elliptic cylinder with tall walls, to which it is tangent:
+ * with few voxels too the material below that edge is none of the cut. Removed, per length: the rectangle above the
+ * disc's middle line, and m times half the disc below it. */
+static void check_ramp_through(double slope)
+{
+    const double radius = 2, length = 30, end = -4, middle = end - slope * length / 2;
+    const swarf_box box = {{0, 0, -40}, {length, 15, 0}};
+    const double removed = length * (2 * radius * -middle + slope * pi * radius * radius / 2);
+    const swarf_path path = oracle_line(-8, 7.03, end - slope * (length + 8), length + 8, 7.03, end + slope * 8);
+    swarf_cutter *cutter = NULL;
+    swarf_stock *stock = NULL;
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = radius / 12;
+    double volume = NAN;
+    CHECK_OK(swarf_cutter_parse("flat:d=4,l=60", &cutter));
+    CHECK_OK(swarf_stock_create_box(&box, &options, &stock));
+    CHECK_OK(swarf_stock_cut(stock, cutter, &path, 1, NULL));
+    CHECK_OK(swarf_stock_volume(stock, &volume));
+    const double found = length * 15 * 40 - volume;
+    printf("ramp of slope %g, 24 voxels wide: %.2e of %.4g mm3\n", slope, found / removed - 1, removed);
+    CHECK_NEAR(found, removed, 6e-4 * removed);
+    swarf_stock_destroy(stock);
+    swarf_cutter_release(cutter);
+}
+
 int main(int count, char **argument)
 {
     test_random random = test_random_begin(99);
@@ -264,6 +289,7 @@ int main(int count, char **argument)
     if (count < 2 || atoi(argument[1]) < 0) {
         check_dips(&random);
         check_helix(&random);
+        for (int i = 0; i < 3; i++) check_ramp_through((const double[]){0.1, 0.3, 1}[i]);
     }
     return test_end();
 }
