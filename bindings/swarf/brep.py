@@ -18,6 +18,7 @@ from typing import Iterator, Optional, Sequence
 from . import chains, strips, truth
 from ._native import Mesh, Surface
 from .chains import SLOPPY, Chain
+from .parts import pieces
 from .progress import Report, check, share
 from .regions import NEAR, NotAnalytic, Regions, find
 from .shapes import (CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet,
@@ -250,7 +251,11 @@ class _Maker:
                 kept_loops.append(kept)
             faces.append(Face(self.shape(region), self.regions.outwards[region], kept_loops))
             shells.setdefault(self.regions.shell[region], []).append(region)
-        made = Brep(corners, edges, faces, [shells[key] for key in sorted(shells)], self.left)
+        keys = sorted(shells)
+        solids = pieces([self.regions.closed(key) for key in keys])
+        if sum(map(len, solids)) != len(keys):
+            raise self.fail("hollow")
+        made = Brep(corners, edges, faces, [shells[key] for key in keys], solids, self.left)
         self.check(made)
         return made
 
@@ -321,8 +326,6 @@ def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = N
     tori alone, or of too many faces; ValueError for a mesh that is empty or open."""
     if not mesh.triangle_count or not mesh.closed:
         raise ValueError(Said("no mesh"))
-    if any(shell.volume_mm3 <= 0 for shell in mesh.shells()):
-        raise NotAnalytic(Said("hollow"), None)
     regions = find(mesh, surface, voxel, moves, share(progress, 0, 0.5))
     if regions.unknown:
         x, y, z = regions.unknown[0]

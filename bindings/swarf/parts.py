@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Optional, Sequence
+from typing import Any, Optional, Protocol, Sequence
 
-from ._native import Mesh, Shell, Surface
+from ._native import Mesh, Surface
 from .records import rows
 from .shapes import Vector, add, cross
 
@@ -13,7 +13,18 @@ from .shapes import Vector, add, cross
 PLANE_HELP = "x=MM, y=MM, z=MM, or X,Y,Z,NX,NY,NZ: a point and the normal"
 
 
-def contains(outer: Shell, inner: Shell) -> bool:
+class Closed(Protocol):
+    """What closes a piece of space, as a Shell does."""
+
+    @property
+    def volume_mm3(self) -> float:
+        """Below 0 where it is round a hollow."""
+    @property
+    def bounding_box(self) -> Optional[tuple[Vector, Vector]]:
+        """Two corners."""
+
+
+def contains(outer: Closed, inner: Closed) -> bool:
     """Whether a shell's box lies in another's."""
     if outer.bounding_box is None or inner.bounding_box is None:
         return False
@@ -21,7 +32,7 @@ def contains(outer: Shell, inner: Shell) -> bool:
     return all(a <= b for a, b in zip(outer_lo, inner_lo)) and all(a >= b for a, b in zip(outer_hi, inner_hi))
 
 
-def pieces(shells: Sequence[Shell]) -> list[list[int]]:
+def pieces(shells: Sequence[Closed]) -> list[list[int]]:
     """Places of the shells of each piece, the largest piece first; a cavity belongs to the smallest solid round it."""
     solids = sorted((i for i, shell in enumerate(shells) if shell.volume_mm3 > 0), key=lambda i: -shells[i].volume_mm3)
     found = {i: [i] for i in solids}

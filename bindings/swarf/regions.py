@@ -33,9 +33,9 @@ SHAPES_MAX = 1000
 
 class NotAnalytic(ValueError):
     """A stock that is not bounded by these faces alone, or whose edges are not found. ``share``: part of the area that
-    lies on such faces; None where that was not measured."""
+    lies on such faces."""
 
-    def __init__(self, text: Said, share: Optional[float]) -> None:
+    def __init__(self, text: Said, share: float) -> None:
         super().__init__(text)
         self.said, self.share = text, share
 
@@ -51,6 +51,14 @@ class Ticks:
         self.turns += 1
         if self.turns % TURNS == 0:
             check(self.progress, self.fraction)
+
+
+@dataclass
+class Closed:
+    """A piece of surface that closes a piece of space; its volume is below 0 where it is round a hollow."""
+
+    volume_mm3: float
+    bounding_box: tuple[Vector, Vector]
 
 
 @dataclass
@@ -81,6 +89,14 @@ class Regions:
         self.shape[:] = [self.shape[region] for region in kept]
         self.outwards[:] = [self.outwards[region] for region in kept]
         self.shell[:] = [self.shell[region] for region in kept]
+
+    def closed(self, shell: int) -> Closed:
+        """Volume and bounding box of a piece of surface."""
+        used = [triangle for triangle, region in zip(self.triangles, self.region_of) if self.shell[region] == shell]
+        first = self.vertices[used[0][0]]
+        volume = sum(dot(add(self.vertices[a], first, -1), _area(self.vertices, [a, b, c])) for a, b, c in used) / 6
+        xs, ys, zs = zip(*(self.vertices[corner] for triangle in used for corner in triangle))
+        return Closed(volume, ((min(xs), min(ys), min(zs)), (max(xs), max(ys), max(zs))))
 
     def borders(self) -> dict[tuple[int, int], tuple[int, int]]:
         """Half-edges between regions: (the region on the left, that on the right)."""

@@ -51,19 +51,24 @@ class Written:
 
 
 def facets(mesh: Mesh, progress: Report = None) -> brep.Brep:
-    """Each triangle of a closed mesh a plane. ValueError: open, empty, a hollow inside, too many, one without area."""
+    """Each triangle of a closed mesh a plane. ValueError: open, empty, a hollow in no solid, too many triangles, one
+    without area."""
     if not mesh.triangle_count or not mesh.closed:
         raise ValueError("a solid is made of a closed mesh")
     if mesh.triangle_count > FACETS_MAX:
         raise ValueError(f"{mesh.triangle_count} triangles are too many for facets, of which {FACETS_MAX} are written "
                          "at most")
-    made = brep.Brep([], [], [], [], 0.0)
-    shells = pieces(mesh.shells())
-    if any(len(shell) > 1 for shell in shells):
-        raise ValueError("there is a hollow inside")
-    for shell in shells:
-        _add(made, mesh.keep_shells(shell) if len(shells) > 1 else mesh)
-        check(progress, len(made.faces) / mesh.triangle_count)
+    made = brep.Brep([], [], [], [], [], 0.0)
+    shells = mesh.shells()
+    solids = pieces(shells)
+    if sum(map(len, solids)) != len(shells):
+        raise ValueError(Said("hollow"))
+    for solid in solids:
+        made.solids.append([])
+        for shell in solid:
+            made.solids[-1].append(len(made.shells))
+            _add(made, mesh.keep_shells([shell]) if len(shells) > 1 else mesh)
+            check(progress, len(made.faces) / mesh.triangle_count)
     return made
 
 

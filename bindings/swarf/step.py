@@ -124,7 +124,7 @@ class _Writer:
             "DEGENERATE_" if spindle else "", self.placement(shape.point, shape.axis, towards), _number(shape.radius),
             _number(shape.second), ",.T." if spindle else ""))
 
-    def solid(self, brep: Brep, faces: list[int], vertices: list[str], curves: list[str], progress: Report) -> str:
+    def shell(self, brep: Brep, faces: list[int], curves: list[str], progress: Report) -> str:
         made = []
         for number in told(faces, len(faces), progress):
             face = brep.faces[number]
@@ -135,7 +135,14 @@ class _Writer:
                 bounds.append(self.put("FACE_BOUND('',%s,.T.)" % self.put("EDGE_LOOP('',%s)" % _list(steps))))
             made.append(self.put("ADVANCED_FACE('',%s,%s,%s)" % (
                 _list(bounds), self.surface(face, brep), ".T." if face.outwards else ".F.")))
-        return self.put("MANIFOLD_SOLID_BREP('',%s)" % self.put("CLOSED_SHELL('',%s)" % _list(made)))
+        return self.put("CLOSED_SHELL('',%s)" % _list(made))
+
+    def solid(self, shells: list[str]) -> str:
+        """Of its outer shell and those round the hollows in it."""
+        if len(shells) == 1:
+            return self.put("MANIFOLD_SOLID_BREP('',%s)" % shells[0])
+        voids = [self.put("ORIENTED_CLOSED_SHELL('',*,%s,.T.)" % shell) for shell in shells[1:]]
+        return self.put("BREP_WITH_VOIDS('',%s,%s)" % (shells[0], _list(voids)))
 
 
 def text(brep: Brep, name: str = "stock", progress: Report = None) -> str:
@@ -145,11 +152,12 @@ def text(brep: Brep, name: str = "stock", progress: Report = None) -> str:
                 for corner in told(brep.corners, len(brep.corners), share(progress, 0, 0.1))]
     curves = [out.put("EDGE_CURVE('',%s,%s,%s,.T.)" % (vertices[edge.start], vertices[edge.end], out.curve(edge, brep)))
               for edge in told(brep.edges, len(brep.edges), share(progress, 0.1, 0.5))]
-    solids, done = [], 0
+    shells, done = [], 0
     for faces in brep.shells:
         begin, done = done, done + len(faces)
-        solids.append(out.solid(brep, faces, vertices, curves, share(
+        shells.append(out.shell(brep, faces, curves, share(
             progress, 0.5 + 0.5 * begin / len(brep.faces), 0.5 + 0.5 * done / len(brep.faces))))
+    solids = [out.solid([shells[number] for number in solid]) for solid in brep.solids]
     word = _string(name)
     context = out.put("APPLICATION_CONTEXT('automotive design')")
     out.put("APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,%s)" % context)

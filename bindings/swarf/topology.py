@@ -35,13 +35,15 @@ class Face:
 
 @dataclass
 class Brep:
-    """Solids as faces, edges and corners; ``shells``: faces that hang together; ``inexact_mm``: by how much faces miss
+    """Solids as faces, edges and corners; ``shells``: faces that hang together; ``solids``: the outer shell of
+    each and those of the hollows in it; ``inexact_mm``: by how much faces miss
     each other at edges, for the digits of the program."""
 
     corners: list[Vector]
     edges: list[Edge]
     faces: list[Face]
     shells: list[list[int]]
+    solids: list[list[int]]
     inexact_mm: float
 
     #: How far the surface was found from it, at most, and where; mm.

@@ -94,7 +94,7 @@ FORMS = {
     "loops open": "the edges of a face do not close",
     "unknown surface": "{percent:.1f} % of the surface is on planes, cylinders, cones, spheres and tori, but not what "
                        "is near ({x:.2f}, {y:.2f}, {z:.2f})",
-    "hollow": "there is a hollow inside",
+    "hollow": "there is a hollow that is in no solid",
     "faces apart": "its faces do not hang together",
     "edge lost": "an edge is not found near ({x:.3f}, {y:.3f}, {z:.3f})",
     "corner lost": "a corner is not found near ({x:.3f}, {y:.3f}, {z:.3f})",

@@ -208,14 +208,17 @@ def test_what_is_no_such_solid():
         brep._Maker(regions.find(mesh, surface, VOXEL), VOXEL).check(made)
 
 
-def test_what_is_hollow_has_no_share():
-    mesh, surface = cut("flat:d=6,l=20", (10, 20, 5), (10, 20, -4))
-    count, vertices, triangles = mesh.vertex_count, mesh.vertices.tolist(), mesh.triangles.tolist()
-    inside = [(30 + 0.1 * x, 15 + 0.1 * y, -5 + 0.1 * z) for x, y, z in vertices]
-    hollow = swarf.Mesh(vertices + inside, triangles + [(a + count, c + count, b + count) for a, b, c in triangles])
-    with pytest.raises(brep.NotAnalytic, match="hollow") as told:
-        brep.make(hollow, surface, VOXEL)
-    assert told.value.share is None
+def test_a_hollow_is_in_its_solid(tmp_path):
+    """A disc that cuts inside of a block alone; and a hollow that is in no solid."""
+    mesh, surface = cut("flat:d=6,l=2", (20, 20, -6), (40, 20, -6))
+    made = brep.make(mesh, surface, VOXEL)
+    assert [len(shell) for shell in made.shells] == [6, 6] and made.solids == [[0, 1]] and made.off_mm < 1e-9
+    assert {face.shape.kind for face in (made.faces[number] for number in made.shells[1])} == {PLANE, CYLINDER}
+    text = step.text(made)
+    assert re.search(r"=BREP_WITH_VOIDS\('',#\d+,\(#\d+\)\)", text) and "MANIFOLD_SOLID" not in text
+    assert len(re.findall(r"=ORIENTED_CLOSED_SHELL\('',\*,#\d+,\.T\.\)", text)) == 1  # outwards is into the hollow
+    with pytest.raises(brep.NotAnalytic, match="in no solid"):
+        brep.make(mesh.keep_shells([1]), surface, VOXEL)
 
 
 def test_an_empty_mesh_has_no_regions():

@@ -45,8 +45,11 @@ def test_two_solids_and_what_is_none():
     apart = solids_box((0, 0, 0), (1, 1, 1), (2, 0, 0), (3, 1, 1))
     assert len(solids.facets(box).shells) == 1 and len(solids.facets(apart).shells) == 2
     hollow = swarf.Mesh(*join((0, 0, 0), (3, 3, 3), (1, 1, 1), (2, 2, 2), turned=True))
-    with pytest.raises(ValueError, match="hollow"):
-        solids.facets(hollow)
+    made = solids.facets(hollow)
+    assert made.solids == [[0, 1]] and volume(made) == pytest.approx(27 - 1)
+    assert solids.facets(apart).solids == [[0], [1]]
+    with pytest.raises(ValueError, match="in no solid"):
+        solids.facets(hollow.keep_shells([1]))
     with pytest.raises(ValueError, match="closed"):
         solids.facets(swarf.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
 

@@ -1282,8 +1282,8 @@
             <translation>das Werkzeug beginnt im Rohteil</translation>
         </message>
         <message>
-            <source>there is a hollow inside</source>
-            <translation>innen ist ein Hohlraum</translation>
+            <source>there is a hollow that is in no solid</source>
+            <translation>ein Hohlraum liegt in keinem Körper</translation>
         </message>
         <message>
             <source>tool T{tool} has no flutes</source>
