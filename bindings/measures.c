@@ -42,6 +42,8 @@ static PyStructSequence_Field contour_fields[] = {
     {"error_mm", "Bound of the distance to the mesh of all vertices."},
     {"budget_met", "Whether there are no more triangles than were allowed."},
     {"unseen_mm3", "Material thinner than a voxel that the mesh has not, about."},
+    {"surface_mm3", "Volume within the surface that the mesh stands for, without what its flat triangles leave out of "
+                    "bulges and put into hollows."},
     {"split_edges", "Edges of triangles that left the surface and were split."},
     {NULL, NULL},
 };
@@ -50,7 +52,7 @@ PyStructSequence_Desc contour_desc = {
     .name = "swarf.Contour",
     .doc = "What Mesh.from_stock() or Mesh.stream() came to.",
     .fields = contour_fields,
-    .n_in_sequence = 11,
+    .n_in_sequence = 12,
 };
 
 /** A struct sequence of `count` values, whose references it takes; NULL with an exception when one is NULL. */
@@ -208,7 +210,7 @@ PyObject *contour_tuple(module_state *state, const swarf_contour_report *r)
                                 PyLong_FromSize_t(r->parted_cells),       PyLong_FromSize_t(r->intersections_found),
                                 PyLong_FromSize_t(r->intersections_left), PyFloat_FromDouble(r->error_mm),
                                 PyBool_FromLong(r->budget_met),           PyFloat_FromDouble(r->unseen_mm3),
-                                PyLong_FromSize_t(r->split_edges)};
+                                PyFloat_FromDouble(r->surface_mm3),       PyLong_FromSize_t(r->split_edges)};
     return sequence_of(state->contour, values, sizeof values / sizeof *values);
 }
 

@@ -852,13 +852,13 @@ class Lump(
     def bounding_box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]: ...
 
 @final
-class Contour(structseq[Any], tuple[int, int, int, int, int, int, int, float, bool, float, int]):
+class Contour(structseq[Any], tuple[int, int, int, int, int, int, int, float, bool, float, float, int]):
     """What Mesh.from_stock() or Mesh.stream() came to."""
 
     __match_args__: Final = (
         "full_triangles", "triangles", "sharp_vertices", "exact_vertices", "parted_cells",
         "intersections_found", "intersections_left", "error_mm", "budget_met", "unseen_mm3",
-        "split_edges"
+        "surface_mm3", "split_edges"
     )
     @property
     def full_triangles(self) -> int: ...
@@ -880,6 +880,8 @@ class Contour(structseq[Any], tuple[int, int, int, int, int, int, int, float, bo
     def budget_met(self) -> bool: ...
     @property
     def unseen_mm3(self) -> float: ...
+    @property
+    def surface_mm3(self) -> float: ...
     @property
     def split_edges(self) -> int: ...
 

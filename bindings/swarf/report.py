@@ -204,6 +204,8 @@ def _mesh(result: Result) -> Optional[dict[str, Any]]:
     made = {
         "error_mm": None if contour is None else contour.error_mm,
         "intersections_left": None if contour is None else contour.intersections_left,
+        "surface_mm3": None if contour is None else contour.surface_mm3,
+        "unseen_mm3": None if contour is None else contour.unseen_mm3,
     }
     if mesh is None:
         return None if contour is None else {"triangles": contour.triangles, "closed": True, **made}

@@ -6,7 +6,7 @@ The add-on has translations of these forms (freecad_mod/translate takes them fro
 """
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Any, Callable, Optional
 
 #: Key -> what is said, with the values as str.format() wants them.
 FORMS = {
@@ -159,3 +159,16 @@ class _Pointed:
 
     def __format__(self, spec: str) -> str:
         return format(self.value, spec).replace(".", self.point)
+
+
+#: Of all material; less of it is not worth a word.
+UNSEEN_SHARE = 1e-3
+
+
+def unseen_note(contour: Any) -> Optional[str]:
+    """What to say of material that a mesh has not (a Contour), None: of too little of it."""
+    thin, whole = contour.unseen_mm3, contour.unseen_mm3 + contour.surface_mm3
+    if thin <= UNSEEN_SHARE * whole:
+        return None
+    return (f"note: about {thin:.3g} mm3, {100 * thin / whole:.2g} % of what is left, is thinner than a voxel and not "
+            "in the mesh; smaller voxels have it")

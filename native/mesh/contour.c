@@ -405,6 +405,9 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
         report->parted_cells += block->vertex_count;
     }
     const swarf_status status = settle(&s);
+    for (size_t i = 0; i < work->block_count; i++)
+        if (swarf_contour_is_within(work, &work->blocks[i], 0))
+            report->surface_mm3 += work->blocks[i].within * pow(work->layout->voxel, 3);
     swarf_facets_memo_free(&memo);
     swarf_facets_known_free(&known);
     SWARF_TRY(status);

@@ -95,6 +95,7 @@ typedef struct contour_block {
     uint32_t centre_count; /* vertices on crossings, of quadrilaterals cut into four */
     uint32_t sharp_count;  /* vertices on edges and corners of the surface */
     uint32_t exact_count;  /* vertices on the exact surface */
+    double within;         /* its share of the volume within the surface, in voxels */
     float unseen;          /* material in voxels that no crossing is near, in voxels */
     size_t vertex_first;   /* of those left, of the whole mesh */
     size_t centre_first;

@@ -56,9 +56,9 @@ static double facing(const double *a, const double *b, const double *c, const do
     return (n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2]) / sqrt(square);
 }
 
-/* Whether the two triangles on the diagonal corner[first] - corner[first + 2] meet the edge itself and not only its
- * line: else they might reach into sheets above or below. */
-static int meets_edge(const corner q[4], int first, int axis)
+/* Where on the edge, 0 .. 1 from its voxel, the two triangles on the diagonal corner[first] - corner[first + 2] meet
+ * it; NAN where they only meet its line: they might reach into sheets above or below. */
+static double meet_edge(const corner q[4], int first, int axis)
 {
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
     const double *p = q[first].at, *r = q[first + 2].at;
@@ -68,10 +68,10 @@ static int meets_edge(const corner q[4], int first, int axis)
     const double third_side = (r[b] - p[b]) * (third[c] - p[c]) - (r[c] - p[c]) * (third[b] - p[b]);
     if (side * third_side < 0) third = q[(first + 3) % 4].at;
     const double area = (r[b] - p[b]) * (third[c] - p[c]) - (r[c] - p[c]) * (third[b] - p[b]);
-    if (area == 0) return 0;
+    if (area == 0) return NAN;
     const double w_third = side / area, w_p = (r[b] * third[c] - r[c] * third[b]) / area, w_r = 1 - w_third - w_p;
     const double height = w_p * p[axis] + w_r * r[axis] + w_third * third[axis];
-    return height >= 0 && height <= 1;
+    return height >= 0 && height <= 1 ? height : NAN;
 }
 
 static void put_facet(swarf_facet *facet, const contour_crossing *crossing, int outwards, float error, uint32_t a,
@@ -108,15 +108,16 @@ static double least_facing(const corner q[4], int first, const double normal[3])
                 facing(q[first].at, q[first + 2].at, q[(first + 3) % 4].at, normal));
 }
 
-/* Which diagonal cuts the quadrilateral: 0, 1, or -1 for all four triangles round its crossing. */
-static int choose_diagonal(const corner q[4], int axis, int outwards, const contour_crossing *crossing)
+/* Which diagonal cuts the quadrilateral, and where on the edge: 0, 1, or -1 for all four triangles round its crossing.
+ */
+static int choose_diagonal(const corner q[4], int axis, int outwards, const contour_crossing *crossing, double *at)
 {
     for (int k = 0; k < 4; k++)
         if (q[k].calm) return -1;
     double normal[3], least[2];
     for (int k = 0; k < 3; k++) normal[k] = outwards ? crossing->normal[k] : -(double)crossing->normal[k];
     for (int d = 0; d < 2; d++) least[d] = least_facing(q, d, normal);
-    const int meets[2] = {meets_edge(q, 0, axis), meets_edge(q, 1, axis)};
+    const double meets[2] = {meet_edge(q, 0, axis), meet_edge(q, 1, axis)};
     int best = least[1] > least[0] + 1e-3;
     if (fabs(least[1] - least[0]) <= 1e-3) {
         double length[2] = {0, 0};
@@ -124,8 +125,27 @@ static int choose_diagonal(const corner q[4], int axis, int outwards, const cont
             for (int k = 0; k < 3; k++) length[d] += (q[d].at[k] - q[d + 2].at[k]) * (q[d].at[k] - q[d + 2].at[k]);
         best = length[1] < length[0] * (1 - 1e-6);
     }
-    if (meets[best]) return best;
-    return meets[!best] ? !best : -1;
+    if (isnan(meets[best])) best = !best;
+    if (isnan(meets[best])) return -1;
+    *at = meets[best];
+    return best;
+}
+
+/* Volume between a triangle and the plane z = 0 of the layout, in voxels; summed up over a closed surface what is
+ * within.
+ */
+static double beneath(const int32_t voxel[3], const double *a, const double *b, const double *c)
+{
+    const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    return area / 2 * (voxel[2] + (a[2] + b[2] + c[2]) / 3);
+}
+
+/* Volume between the triangles of a crossing, which meet its edge at `at`, and the surface, in voxels. The edges of an
+ * axis measure all of it, those of the three axes in the shares of the squares of the normal. */
+static double between(const contour_crossing *crossing, int axis, int outwards, double at)
+{
+    const double n = (double)crossing->normal[axis], far = (double)crossing->t - at;
+    return n * n * (outwards ? far : -far);
 }
 
 enum { NONE_SAME = -1, TWO_SAME = -2 };
@@ -171,6 +191,74 @@ swarf_status swarf_contour_unfold(contour *work, contour_block *block)
     return SWARF_OK;
 }
 
+/* A crossing on its way to facets. */
+typedef struct joint {
+    const contour_crossing *crossing;
+    int32_t voxel[3];
+    int axis, outwards;
+    float error;
+    corner q[4];
+} joint;
+
+/* A facet of a block, the numbers of its corners and their places; its share of the volume. */
+static void add_facet(contour_block *block, const joint *j, const uint32_t v[3], const double *const at[3])
+{
+    put_facet(&block->facets[block->facet_count++], j->crossing, j->outwards, j->error, v[0], v[1], v[2]);
+    block->within += (j->outwards ? 1 : -1) * beneath(j->voxel, at[0], at[1], at[2]);
+}
+
+/* The facet of three corners of the quadrilateral. */
+static void add_three(contour_block *block, const joint *j, int a, int b, int c)
+{
+    const corner *q = j->q;
+    add_facet(block, j, (uint32_t[3]){q[a].number, q[b].number, q[c].number},
+              (const double *[3]){q[a].at, q[b].at, q[c].at});
+}
+
+/* Four facets round the crossing. */
+static void add_four(const contour *work, contour_block *block, const joint *j)
+{
+    const double t = fmin(fmax((double)j->crossing->t, SWARF_CONTOUR_LAST_MARGIN), 1 - SWARF_CONTOUR_LAST_MARGIN);
+    const uint32_t number = SWARF_CENTRE | block->centre_count;
+    contour_vertex *centre = &block->centres[block->centre_count++];
+    double middle[3];
+    for (int k = 0; k < 3; k++) {
+        middle[k] = k == j->axis ? t : 0;
+        centre->xyz[k] = (float)(work->layout->origin[k] + (j->voxel[k] + middle[k]) * work->layout->voxel);
+    }
+    for (int k = 0; k < 4; k++) {
+        const corner *a = &j->q[k], *b = &j->q[(k + 1) % 4];
+        add_facet(block, j, (uint32_t[3]){a->number, b->number, number}, (const double *[3]){a->at, b->at, middle});
+    }
+}
+
+/* The facets of a crossing, if its corners are there: at the border of the layout they may not be, and the mesh will be
+ * found open. */
+static void join_crossing(const contour *work, contour_block *block, joint *j)
+{
+    if (!find_corners(work, block, j->voxel, j->axis, j->q)) return;
+    block->full_count += 2;
+    for (int k = 0; k < 4; k++)
+        if (j->q[k].tiled) j->error = (float)(SWARF_TILE_ERROR * work->error_mm);
+    const int same = find_same(j->q);
+    if (same == TWO_SAME) return;
+    measure_corners(work, j->voxel, j->q);
+    if (same != NONE_SAME) {
+        add_three(block, j, (same + 1) % 4, (same + 2) % 4, (same + 3) % 4);
+        return;
+    }
+    double at;
+    const int d = choose_diagonal(j->q, j->axis, j->outwards, j->crossing, &at);
+    if (d < 0) {
+        block->full_count += 2;
+        add_four(work, block, j);
+        return;
+    }
+    add_three(block, j, d, d + 1, d + 2);
+    add_three(block, j, d, d + 2, (d + 3) % 4);
+    block->within += between(j->crossing, j->axis, j->outwards, at);
+}
+
 swarf_status swarf_contour_join(contour *work, contour_block *block)
 {
     free(block->facets);
@@ -178,57 +266,22 @@ swarf_status swarf_contour_join(contour *work, contour_block *block)
     block->facets = NULL;
     block->centres = NULL;
     block->facet_count = block->full_count = block->centre_count = 0;
+    block->within = 0;
     if (block->crossing_count == 0) return SWARF_OK;
-    swarf_facet *facets = malloc(4 * (size_t)block->crossing_count * sizeof *facets);
-    contour_vertex *centres = malloc(block->crossing_count * sizeof *centres);
-    block->facets = facets;
-    block->centres = centres;
-    if (!facets || !centres) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for facets");
-    const contour_crossing *crossing = block->crossings;
-    for (int axis = 0; axis < 3; axis++)
+    block->facets = malloc(4 * (size_t)block->crossing_count * sizeof *block->facets);
+    block->centres = malloc(block->crossing_count * sizeof *block->centres);
+    if (!block->facets || !block->centres) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for facets");
+    joint j = {.crossing = block->crossings};
+    for (j.axis = 0; j.axis < 3; j.axis++)
         for (int x = 0; x < 8; x++)
-            for (uint64_t word = block->edge_mask[axis][x]; word; word &= word - 1, crossing++) {
-                const int bit = __builtin_ctzll(word);
-                const int32_t voxel[3] = {block->ijk[0] + x, block->ijk[1] + (bit >> 3), block->ijk[2] + (bit & 7)};
-                const int outwards = block->inside[x][bit >> 3] >> (bit & 7) & 1;
-                corner q[4];
-                /* at the border of the layout: the mesh will be found open */
-                if (!find_corners(work, block, voxel, axis, q)) continue;
-                block->full_count += 2;
-                float error = 0;
-                for (int k = 0; k < 4; k++)
-                    if (q[k].tiled) error = (float)(SWARF_TILE_ERROR * work->error_mm);
-                swarf_facet *next = facets + block->facet_count;
-                const int same = find_same(q);
-                if (same != NONE_SAME) {
-                    if (same == TWO_SAME) continue;
-                    put_facet(next, crossing, outwards, error, q[(same + 1) % 4].number, q[(same + 2) % 4].number,
-                              q[(same + 3) % 4].number);
-                    block->facet_count++;
-                    continue;
-                }
-                measure_corners(work, voxel, q);
-                const int d = choose_diagonal(q, axis, outwards, crossing);
-                if (d >= 0) {
-                    put_facet(next, crossing, outwards, error, q[d].number, q[d + 1].number, q[d + 2].number);
-                    put_facet(next + 1, crossing, outwards, error, q[d].number, q[d + 2].number, q[(d + 3) % 4].number);
-                    block->facet_count += 2;
-                    continue;
-                }
-                block->full_count += 2;
-                contour_vertex *centre = &centres[block->centre_count];
-                const double t =
-                    fmin(fmax((double)crossing->t, SWARF_CONTOUR_LAST_MARGIN), 1 - SWARF_CONTOUR_LAST_MARGIN);
-                for (int k = 0; k < 3; k++)
-                    centre->xyz[k] =
-                        (float)(work->layout->origin[k] + (voxel[k] + (k == axis ? t : 0)) * work->layout->voxel);
-                for (int k = 0; k < 4; k++)
-                    put_facet(next + k, crossing, outwards, error, q[k].number, q[(k + 1) % 4].number,
-                              SWARF_CENTRE | block->centre_count);
-                block->facet_count += 4;
-                block->centre_count++;
+            for (uint64_t word = block->edge_mask[j.axis][x]; word; word &= word - 1, j.crossing++) {
+                const int bit = __builtin_ctzll(word), at[3] = {x, bit >> 3, bit & 7};
+                for (int k = 0; k < 3; k++) j.voxel[k] = block->ijk[k] + at[k];
+                j.outwards = block->inside[x][at[1]] >> at[2] & 1;
+                j.error = 0;
+                join_crossing(work, block, &j);
             }
-    swarf_facet *fitting = realloc(facets, (block->facet_count ? block->facet_count : 1) * sizeof *facets);
+    swarf_facet *fitting = realloc(block->facets, (block->facet_count ? block->facet_count : 1) * sizeof *fitting);
     if (fitting) block->facets = fitting;
     return SWARF_OK;
 }

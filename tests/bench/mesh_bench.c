@@ -45,11 +45,13 @@ int main(int count, char **argument)
         printf("{\"program\": \"%s\", \"resolution\": %s, \"threads\": %d, \"error_voxels\": %s, \"openvdb_s\": %.4f, "
                "\"contour_s\": %.4f, \"exact_s\": %.4f, \"openvdb_triangles\": %zu, \"triangles\": %zu, "
                "\"exact_triangles\": %zu, \"field_mm3\": %.4f, \"openvdb_mm3\": %.4f, \"mesh_mm3\": %.4f, "
-               "\"exact_mm3\": %.4f, \"error_mm\": %.6f, \"cut_each_other\": [%zu, %zu], \"left\": [%zu, %zu]}\n",
+               "\"exact_mm3\": %.4f, \"surface_mm3\": [%.4f, %.4f], \"unseen_mm3\": %.4f, \"error_mm\": %.6f, "
+               "\"cut_each_other\": [%zu, %zu], \"left\": [%zu, %zu]}\n",
                j->name, argument[2], swarf_threads(), argument[4], t_contour - t_uniform, t_exact - t_contour,
                t_end - t_exact, swarf_mesh_triangles(uniform).triangle_count, report.triangles, exact_report.triangles,
                field, swarf_mesh_topology(uniform).volume_mm3, swarf_mesh_topology(mesh).volume_mm3,
-               swarf_mesh_topology(exact).volume_mm3, exact_report.error_mm, report.intersections_found,
+               swarf_mesh_topology(exact).volume_mm3, report.surface_mm3, exact_report.surface_mm3,
+               exact_report.unseen_mm3, exact_report.error_mm, report.intersections_found,
                exact_report.intersections_found, report.intersections_left, exact_report.intersections_left);
         fflush(stdout);
         if (repeat == 1 && count > 6) {

@@ -40,6 +40,7 @@ def test_contour_says_what_it_did(stock, mesh):
     assert mesh.contour.full_triangles == full.contour.triangles == full.triangle_count
     assert 0 < mesh.contour.error_mm <= 0.02 * (1 + 1e-6) and full.contour.error_mm == 0
     assert mesh.contour.intersections_left == 0 and mesh.contour.budget_met is True
+    assert mesh.contour.surface_mm3 == pytest.approx(16 * 8 * 6, rel=1e-4) and mesh.contour.unseen_mm3 == 0
     assert not swarf.Mesh.from_stock(stock, 0.001, budget=20).contour.budget_met
     assert swarf.Mesh(mesh.vertices, mesh.triangles).contour is None
     with pytest.raises(ValueError, match="error -1 mm"):
@@ -48,6 +49,25 @@ def test_contour_says_what_it_did(stock, mesh):
         swarf.Mesh.from_stock(stock, 0.1, budget=-3)
     with pytest.raises(ValueError, match="budget of 5 triangles needs an error"):
         swarf.Mesh.from_stock(stock, budget=5)
+
+
+def test_what_is_too_thin_is_told(tmp_path, capsys):
+    """A floor of 0.4 voxels is not in the mesh: how much it was goes into the report and is said."""
+    stock, program = swarf.Stock.box((0, 0, -2), (10, 10, 0), VOXEL), swarf.Program(start=(5, -5, -1.92))
+    program.add_line((5, 15, -1.92))
+    stock.cut(swarf.Cutter("flat:d=4,l=20"), program)
+    made = swarf.Mesh.from_stock(stock, ERROR).contour
+    floor, walls = 4 * 10 * 0.08, 6 * 10 * 2
+    assert made.surface_mm3 == pytest.approx(walls, rel=3e-3)  # by the field alone edges are off
+    assert made.unseen_mm3 == pytest.approx(floor, rel=0.15)
+    stock.write(str(tmp_path / "stock.vdb"))
+    assert main(["mesh", str(tmp_path / "stock.vdb"), "--measure"]) == 0
+    said = capsys.readouterr()
+    assert "is thinner than a voxel and not in the mesh" in said.err and f"about {made.unseen_mm3:.3g} mm3" in said.err
+    assert json.loads(said.out)["contour"]["unseen_mm3"] == pytest.approx(made.unseen_mm3)
+    swarf.Stock.box((0, 0, -2), (10, 10, 0), VOXEL).write(str(tmp_path / "thick.vdb"))
+    assert main(["mesh", str(tmp_path / "thick.vdb"), "--measure"]) == 0
+    assert "thinner" not in capsys.readouterr().err
 
 
 def test_loose_pieces(mesh):

@@ -14,6 +14,7 @@ from ..console import DONE, FINDINGS, check_outputs, say
 from ..parts import PLANE_HELP, parse_plane, pieces, thinnest
 from ..progress import Bar
 from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES, check_coloured, streams
+from ..wording import unseen_note
 
 
 def add(subparsers: Any) -> None:
@@ -175,6 +176,9 @@ def run(arguments: argparse.Namespace) -> int:
     if made.intersections_left:
         print(f"swarf: warning: {made.intersections_left} pairs of triangles cut each other: the surface touches "
               "itself there", file=sys.stderr)
+    thin = unseen_note(made)
+    if thin:
+        print(f"swarf: {thin}", file=sys.stderr)
     if not made.budget_met:
         print(f"swarf: warning: {made.triangles} triangles are more than {arguments.budget}: an error of "
               f"{made.error_mm:g} mm leaves no fewer; allow a larger --error", file=sys.stderr)

@@ -15,6 +15,7 @@ from ..progress import Bar
 from ..simulate import check_coloured, output_suffix, simulate
 from ..stocks import RESAMPLED_FIELD
 from ..verify import check_tolerance, uncut_text
+from ..wording import unseen_note
 
 
 def add(subparsers: Any) -> None:
@@ -90,6 +91,9 @@ def run(arguments: argparse.Namespace) -> int:
     cuts = getattr(result.contour, "intersections_left", 0)
     if cuts:
         told.append(f"warning: {cuts} pairs of triangles cut each other: the surface touches itself there")
+    thin = result.contour and unseen_note(result.contour)
+    if thin:
+        told.append(thin)
     if result.resampled_voxels:
         corners = ", at corners by up to 0.3" if result.resampled_voxels == RESAMPLED_FIELD else ""
         told.append(f"note: the stock was turned into new voxels, which are off by {result.resampled_voxels:g} voxels "

@@ -49,6 +49,10 @@ typedef struct swarf_contour_report {
     /** Material thinner than a voxel that the mesh has not, about, as swarf_stock_volume() counts it: in voxels whose
      *  centre lies outside and about which no other's lies inside. */
     double unseen_mm3;
+    /** Volume within the surface that the mesh stands for. The mesh's own differs by what its flat triangles leave out
+     * of bulges and put into hollows; here that is added up where edges of the voxels meet both. Of what is thicker
+     * than a voxel: unseen_mm3 is not in it. */
+    double surface_mm3;
     size_t split_edges; /**< of triangles that left the surface, with options.fine */
 } swarf_contour_report;
 
