@@ -149,8 +149,7 @@ static int is_border(const contour *work, const contour_block *block, int x)
            (block->finished || end == work->band->end || end == work->band->end + SWARF_LEAF_DIM);
 }
 
-/* Marks of vertices: those of noted cells are not to be left out, nor are centres, where something was amiss already.
- */
+/* Marks of vertices: those of noted cells are not to be left out, nor are centres where something was amiss already. */
 static uint8_t *mark_vertices(const contour *work, const swarf_facets *facets)
 {
     uint8_t *marks = calloc(facets->vertex_count + 1, 1);
@@ -161,7 +160,6 @@ static uint8_t *mark_vertices(const contour *work, const swarf_facets *facets)
         cells += block->left_count;
         uint32_t next = 0;
         if (block->left_count == 0) continue; /* beyond the band */
-        if (block->touched) memset(marks + block->vertex_first, SWARF_VERTEX_TOUCHED, block->left_count);
         for (int x = 0; x < 8; x++)
             for (uint64_t word = block->cell_mask[x]; word; word &= word - 1, next++) {
                 if (!is_border(work, block, x) && !(block->keep_mask[x] >> __builtin_ctzll(word) & 1)) continue;
@@ -173,8 +171,8 @@ static uint8_t *mark_vertices(const contour *work, const swarf_facets *facets)
     }
     for (size_t i = 0; i < work->block_count; i++) {
         const contour_block *block = &work->blocks[i];
-        memset(marks + cells + block->centre_first, SWARF_VERTEX_LOCKED | (block->touched ? SWARF_VERTEX_TOUCHED : 0),
-               block->centre_count);
+        if (work->band || block->amiss)
+            memset(marks + cells + block->centre_first, SWARF_VERTEX_LOCKED, block->centre_count);
     }
     return marks;
 }

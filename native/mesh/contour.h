@@ -87,6 +87,7 @@ typedef struct contour_block {
     uint64_t noted_mask[8];  /* to go one further */
     int changed;             /* vertices are to be placed again */
     int touched;             /* its facets may be others than at the last attempt */
+    int amiss;               /* were touched at any attempt */
     int finished;            /* of the band before: only looked at */
     uint32_t vertex_count;
     uint32_t left_count; /* vertices without those that others stand for */

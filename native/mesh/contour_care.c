@@ -50,7 +50,7 @@ static void touch_about(contour *work, const contour_block *block)
         int32_t corner[3];
         for (int k = 0; k < 3; k++) corner[k] = block->ijk[k] + part[k] * SWARF_LEAF_DIM;
         contour_block *near = swarf_contour_block_at(work, corner);
-        if (near) near->touched = 1;
+        if (near) near->touched = near->amiss = 1;
     }
 }
 

@@ -522,9 +522,8 @@ static size_t put_in(const splitting *s, const cutting *c, swarf_facets *facets,
     size_t made = 0, own = 0;
     for (size_t i = 0; i < s->count; i++) {
         if (!s->made[i]) continue;
-        const uint32_t *v = s->edges[2 * i].v;
         memmove(facets->xyz + 3 * (before + made), facets->xyz + 3 * (before + i), 3 * sizeof *facets->xyz);
-        if (marks) marks[before + made] = (marks[v[0]] | marks[v[1]]) & SWARF_VERTEX_TOUCHED;
+        if (marks) marks[before + made] = 0;
         number[i] = (uint32_t)(before + made++);
         own += !facets->facet[s->edges[2 * i].facet].beyond;
     }

@@ -26,15 +26,13 @@ void swarf_facets_free(swarf_facets *facets);
 /** Drop vertices that no facet uses. */
 swarf_status swarf_facets_compact(swarf_facets *facets);
 
-/** Marks of vertices: stays; may have changed since the last time, it or what is about it. */
-enum { SWARF_VERTEX_LOCKED = 1, SWARF_VERTEX_TOUCHED = 2 };
+/** Mark of vertices: stays. */
+enum { SWARF_VERTEX_LOCKED = 1 };
 
-/** What simplifying came to cube by cube, so that only cubes with touched vertices are simplified again. Starts as
- *  zeros. */
+/** What simplifying came to cube by cube, so that only cubes with other facets than before are simplified again. Starts
+ *  as zeros. */
 typedef struct swarf_facets_memo {
-    struct cube_memo *cube;
-    size_t count[3];
-    double lo[3];
+    struct pass_memo *pass;
 } swarf_facets_memo;
 
 void swarf_facets_memo_free(swarf_facets_memo *memo);

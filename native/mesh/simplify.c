@@ -18,6 +18,8 @@ static const struct pass {
     double edge, shift;
 } passes[] = {{32, 0}, {32, 0.5}, {96, 0.25}, {256, 0.4}, {1e9, 0}};
 enum { PASSES = sizeof passes / sizeof *passes };
+/* The first take most of the time, and of their cubes most come again as they were. */
+enum { MEMO_PASSES = 3 };
 /* Cubes that a table is made for; more are made larger. */
 static const double most_cubes = 1 << 22;
 /* With a budget the error grows by this factor until the budget is met: the mesh ends within it of the least error. */
@@ -27,7 +29,7 @@ enum { ERROR_STEPS = 8 };
 typedef struct job {
     swarf_facets *facets;
     const uint8_t *marks;
-    swarf_facets_memo *memo;  /* of this pass, NULL: none */
+    struct pass_memo *memo;   /* of this pass, NULL: none */
     double least[3], most[3]; /* of the vertices */
     double lo[3], edge, limit;
     size_t count[3];
@@ -143,27 +145,76 @@ typedef struct cube_memo {
     size_t facet_count;
     uint8_t *state; /* of its vertices */
     size_t vertices, facets, owned;
+    uint64_t print;
 } cube_memo;
 
-void swarf_facets_memo_free(swarf_facets_memo *memo)
+typedef struct pass_memo {
+    cube_memo *cube;
+    size_t count;
+} pass_memo;
+
+static void forget(pass_memo *memo)
 {
-    const size_t cubes = memo->count[0] * memo->count[1] * memo->count[2];
-    for (size_t i = 0; memo->cube && i < cubes; i++) {
+    for (size_t i = 0; memo->cube && i < memo->count; i++) {
         free(memo->cube[i].facet);
         free(memo->cube[i].state);
     }
     free(memo->cube);
-    memset(memo, 0, sizeof *memo);
+    *memo = (pass_memo){0};
+}
+
+void swarf_facets_memo_free(swarf_facets_memo *memo)
+{
+    for (int pass = 0; memo->pass && pass < PASSES; pass++) forget(&memo->pass[pass]);
+    free(memo->pass);
+    memo->pass = NULL;
+}
+
+static uint64_t mix(uint64_t print, uint64_t word)
+{
+    print = (print ^ word) * UINT64_C(0x9e3779b97f4a7c15);
+    return print ^ print >> 29;
+}
+
+static uint64_t mix_all(uint64_t print, const void *bytes, size_t size)
+{
+    uint64_t word = 0;
+    size_t at = 0;
+    for (; at + sizeof word <= size; at += sizeof word) {
+        memcpy(&word, (const char *)bytes + at, sizeof word);
+        print = mix(print, word);
+    }
+    word = 0;
+    memcpy(&word, (const char *)bytes + at, size - at);
+    return mix(print, word);
+}
+
+/* The hash of all that a region is simplified by. */
+static uint64_t print_of(const simplify_region *r)
+{
+    uint64_t print = mix_all(0, r->xyz, 3 * r->vertex_count * sizeof *r->xyz);
+    print = mix_all(print, r->state, r->vertex_count);
+    print = mix_all(print, r->need, r->vertex_count * sizeof *r->need);
+    for (size_t f = 0; f < r->facet_count; f++) {
+        const simplify_facet *here = &r->facet[f];
+        uint64_t words[3] = {here->v[0] | (uint64_t)here->v[1] << 32, here->v[2]};
+        uint32_t error;
+        memcpy(&error, &here->error_mm, sizeof error);
+        words[1] |= (uint64_t)error << 32;
+        memcpy(&words[2], here->normal, sizeof here->normal);
+        for (int k = 0; k < 3; k++) print = mix(print, words[k]);
+    }
+    return print;
 }
 
 /* Without memory for it there is nothing to recall. */
-static void remember(const simplify_region *r, cube_memo *memo)
+static void remember(const simplify_region *r, uint64_t print, cube_memo *memo)
 {
     size_t left = 0;
     for (size_t f = 0; f < r->owned_count; f++) left += r->facet[f].alive;
     free(memo->facet);
     free(memo->state);
-    *memo = (cube_memo){.vertices = r->vertex_count, .facets = r->facet_count, .owned = r->owned_count};
+    *memo = (cube_memo){.vertices = r->vertex_count, .facets = r->facet_count, .owned = r->owned_count, .print = print};
     memo->facet = malloc((left + 1) * sizeof *memo->facet);
     memo->state = malloc(r->vertex_count + 1);
     if (!memo->facet || !memo->state) return;
@@ -176,10 +227,10 @@ static void remember(const simplify_region *r, cube_memo *memo)
     }
 }
 
-static int recall(simplify_region *r, const cube_memo *memo)
+static int recall(simplify_region *r, uint64_t print, const cube_memo *memo)
 {
     if (!memo->facet || !memo->state || memo->vertices != r->vertex_count || memo->facets != r->facet_count ||
-        memo->owned != r->owned_count)
+        memo->owned != r->owned_count || memo->print != print)
         return 0;
     memcpy(r->state, memo->state, r->vertex_count);
     for (size_t f = 0; f < r->owned_count; f++) r->facet[f].alive = 0;
@@ -211,10 +262,8 @@ static size_t put_back(const simplify_region *r, swarf_facet *mesh)
     return gone;
 }
 
-/* Returns whether a vertex of it is touched. */
-static int add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, int shared)
+static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, int shared)
 {
-    int touched = 0;
     const size_t f = r->facet_count++;
     const swarf_facet *facet = &j->facets->facet[number];
     simplify_facet *here = &r->facet[f];
@@ -231,9 +280,8 @@ static int add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, i
             r->head[own] = SWARF_NO_VERTEX;
             r->mark[own] = 0;
             r->need[own] = j->settled[vertex] ? INFINITY : 0;
-            const unsigned marks = j->marks ? j->marks[vertex] : SWARF_VERTEX_TOUCHED;
-            touched |= (marks & SWARF_VERTEX_TOUCHED) != 0;
-            const int fixed = marks & SWARF_VERTEX_LOCKED || (j->zone && j->zone[vertex] < ZONE_BESIDE);
+            const int locked = j->marks && j->marks[vertex] & SWARF_VERTEX_LOCKED;
+            const int fixed = locked || (j->zone && j->zone[vertex] < ZONE_BESIDE);
             r->state[own] = fixed ? SIMPLIFY_FIXED : j->settled[vertex] ? 0 : SIMPLIFY_DIRTY;
             for (int c = 0; c < 3; c++)
                 r->xyz[3 * (size_t)own + (size_t)c] = j->facets->xyz[3 * (size_t)vertex + (size_t)c];
@@ -243,7 +291,15 @@ static int add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, i
         here->next[k] = r->head[own];
         r->head[own] = (uint32_t)(4 * f + k);
     }
-    return touched;
+}
+
+static void simplify_or_recall(const job *j, simplify_region *r, size_t cube)
+{
+    cube_memo *memo = j->memo ? &j->memo->cube[cube] : NULL;
+    const uint64_t print = memo ? print_of(r) : 0;
+    if (memo && recall(r, print, memo)) return;
+    swarf_simplify_region(r, j->limit, j->first);
+    if (memo) remember(r, print, memo);
 }
 
 static swarf_status simplify_cube(void *context, size_t cube)
@@ -266,14 +322,10 @@ static swarf_status simplify_cube(void *context, size_t cube)
     if (!r.xyz || !r.global || !r.head || !r.state || !r.mark || !r.need || !r.facet) {
         status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     } else {
-        int touched = 0;
-        for (size_t i = 0; i < owned; i++) touched |= add_facet(j, &r, cube, j->owned[owned_first + i], 0);
+        for (size_t i = 0; i < owned; i++) add_facet(j, &r, cube, j->owned[owned_first + i], 0);
         r.owned_count = owned;
-        for (size_t i = 0; i < shared; i++) touched |= add_facet(j, &r, cube, j->shared[shared_first + i], 1);
-        if (touched || !j->memo || !recall(&r, &j->memo->cube[cube])) {
-            swarf_simplify_region(&r, j->limit, j->first);
-            if (j->memo) remember(&r, &j->memo->cube[cube]);
-        }
+        for (size_t i = 0; i < shared; i++) add_facet(j, &r, cube, j->shared[shared_first + i], 1);
+        simplify_or_recall(j, &r, cube);
         j->gone[cube] = put_back(&r, j->facets->facet);
         for (size_t i = 0; i < r.vertex_count; i++) j->settled[r.global[i]] = r.state[i] == 0;
     }
@@ -319,17 +371,14 @@ static void lay_out(job *j, const struct pass *pass, double voxel)
 }
 
 /* A memo of other cubes is none. */
-static swarf_status lay_out_memo(const job *j)
+static swarf_status lay_out_memo(const job *j, size_t cubes)
 {
-    swarf_facets_memo *memo = j->memo;
-    if (!memo || (memo->cube && memcmp(memo->count, j->count, sizeof memo->count) == 0 &&
-                  memcmp(memo->lo, j->lo, sizeof memo->lo) == 0))
-        return SWARF_OK;
-    swarf_facets_memo_free(memo);
-    memo->cube = calloc(j->count[0] * j->count[1] * j->count[2], sizeof *memo->cube);
+    pass_memo *memo = j->memo;
+    if (!memo || (memo->cube && memo->count == cubes)) return SWARF_OK;
+    forget(memo);
+    memo->cube = calloc(cubes, sizeof *memo->cube);
     if (!memo->cube) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
-    memcpy(memo->count, j->count, sizeof memo->count);
-    memcpy(memo->lo, j->lo, sizeof memo->lo);
+    memo->count = cubes;
     return SWARF_OK;
 }
 
@@ -337,8 +386,8 @@ static swarf_status run_pass(job *j, const struct pass *pass, double voxel, cons
                              double to, size_t *gone)
 {
     lay_out(j, pass, voxel);
-    SWARF_TRY(lay_out_memo(j));
     const size_t cubes = j->count[0] * j->count[1] * j->count[2];
+    SWARF_TRY(lay_out_memo(j, cubes));
     if (pass == &passes[PASSES - 1]) SWARF_TRY(find_zones(j));
     j->owned_begin = calloc(cubes, sizeof *j->owned_begin);
     j->shared_begin = calloc(cubes, sizeof *j->shared_begin);
@@ -384,6 +433,8 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
     swarf_status status = SWARF_OK;
     if (!j.cube || !j.local || !j.settled)
         status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    if (memo && !memo->pass) memo->pass = calloc(PASSES, sizeof *memo->pass);
+    if (memo && !memo->pass) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     find_bounds(&j);
     const int steps = budget ? ERROR_STEPS : 1;
     double at = from;
@@ -393,7 +444,7 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
         for (int pass = 0; pass < PASSES && status == SWARF_OK; pass++) {
             size_t gone = 0;
             j.first = pass == 0;
-            j.memo = pass == 0 && !budget ? memo : NULL; /* the first pass takes most of the time */
+            j.memo = memo && !budget && pass < MEMO_PASSES ? &memo->pass[pass] : NULL;
             if (j.first) memset(j.settled, 0, facets->vertex_count);
             status = run_pass(&j, &passes[pass], voxel, progress, at, at + part, &gone);
             free_pass(&j);
