@@ -90,7 +90,7 @@ class _Maker:
     def solve(self, equations: Sequence[Equations], start: Vector, lost: str) -> Vector:
         check(self.progress, self.done)
         found = meet(equations, start)
-        if found is None or found[1] > SLOPPY or distance(found[0], start) > 4 * self.voxel:
+        if found is None or found[1] > SLOPPY or not chains.reached(equations, start, found[0], 4, self.voxel):
             raise self.fail(lost, x=start[0], y=start[1], z=start[2])
         self.left = max(self.left, found[1])
         return found[0]
@@ -181,6 +181,8 @@ class _Maker:
     def edge(self, chain: Chain, corners: list[Vector]) -> Edge:
         """The curve of a chain."""
         start, end = self.corner_of[chain.vertices[0]], self.corner_of[chain.vertices[-1]]
+        if start != end and self.shape(chain.left).kind == self.shape(chain.right).kind == PLANE:
+            return Edge(start, end)  # however flatly they cross: between, it would be less exact
         points = self.samples(chain, corners[start], corners[end])
         close = CLOSE + 2 * self.left
         if start != end and _is_line(points, close):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Sequence
 
 from .regions import Regions
 from .shapes import Equations, Vector, add, distance, dot, meet, on, tangency
@@ -14,6 +14,9 @@ SLOPPY = 2e-3
 
 #: Cosine of the angle from which on faces cross and do not touch, as far as the mesh can tell.
 CROSSING = 0.8
+
+#: In voxels: how far from the mesh shapes that cross at a flat angle may do so, and how near it both have to be.
+FLAT, ALMOST = 40.0, 0.05
 
 
 @dataclass
@@ -68,6 +71,15 @@ def contact(regions: Regions, a: int, b: int, place: Vector, near: float) -> Opt
     found = meet([on(regions.shape[a]), on(regions.shape[b]), touch(regions, a, b)], place)
     touches = found is not None and found[1] < SLOPPY and distance(found[0], place) < near
     return touch(regions, a, b) if touches else None
+
+
+def reached(wanted: Sequence[Equations], start: Vector, place: Vector, near: float, voxel: float) -> bool:
+    """Whether a place is within ``near`` voxels of where it was looked for; shapes that cross at a flat angle do so
+    farther from there, where their equations almost held."""
+    off = distance(start, place) / voxel
+    if off <= near or off > FLAT:
+        return off <= near
+    return all(abs(value) <= ALMOST * voxel for equation in wanted for value, _ in equation(start))
 
 
 def middle(regions: Regions, chain: Chain) -> Vector:

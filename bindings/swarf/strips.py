@@ -53,6 +53,7 @@ class _Mender:
 
     def __init__(self, regions: Regions, surface: Surface, voxel: float, moves: Optional[int]) -> None:
         self.regions, self.surface, self.voxel, self.moves = regions, surface, voxel, moves
+        self.kept: set[tuple[int, ...]] = set()  # corners that were looked at: the vertex and the regions about it
 
     def outside(self, region: int, place: Vector) -> Vector:
         """Normal of a region out of the material."""
@@ -67,8 +68,9 @@ class _Mender:
             touching = (chains.contact(self.regions, a, b, start, OFF * self.voxel) for b in beside[:number])
             wanted += [touch for touch in touching if touch is not None]
         found = meet(wanted, start)
-        near = found is not None and found[1] <= SLOPPY and distance(found[0], start) <= OFF * self.voxel
-        return found[0] if found is not None and near else None
+        if found is None or found[1] > SLOPPY or not chains.reached(wanted, start, found[0], OFF, self.voxel):
+            return None
+        return found[0]
 
     # ---- strips ----
 
@@ -179,7 +181,10 @@ class _Mender:
         fan = opening.turn(regions, vertex, start)
         runs = _runs(regions, fan)
         around = [region for _, region in runs]
-        if len(runs) < 4 or self.place(list(dict.fromkeys(around)), vertex) is not None:
+        if len(runs) < 4 or (vertex, *around) in self.kept:
+            return False
+        self.kept.add((vertex, *around))
+        if self.place(list(dict.fromkeys(around)), vertex) is not None:
             return False
         best: Optional[tuple[tuple[bool, float], tuple[int, int], tuple[Vector, Vector]]] = None
         for i in range(len(runs)):
