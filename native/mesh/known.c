@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 16384 };
+/* Facets one thread takes at a time; how far ahead slots are fetched, which lie all over memory. */
+enum { CHUNK = 16384, AHEAD = 16 };
 
 void swarf_facets_known_free(swarf_facets_known *known)
 {
@@ -26,17 +27,38 @@ static void corners_of(const swarf_facets *facets, size_t f, float out[9])
         memcpy(out + 3 * (size_t)k, facets->xyz + 3 * (size_t)facets->facet[f].v[k], 3 * sizeof *out);
 }
 
-/* Where corners are, or the empty slot where they would be. */
-static size_t find(const swarf_facets_known *known, const float corners[9])
+/* The first slot to look at for corners. */
+static size_t first_slot(const swarf_facets_known *known, const float corners[9])
 {
     uint32_t bits[9];
     uint64_t hash = 0;
     memcpy(bits, corners, sizeof bits);
     for (int k = 0; k < 9; k++) hash = (hash ^ bits[k]) * UINT64_C(0x9e3779b97f4a7c15) ^ hash >> 29;
-    size_t at = (size_t)(hash >> 20) & (known->slot_count - 1);
-    while (known->slots[at] && memcmp(known->corners[known->slots[at] - 1], corners, sizeof bits) != 0)
+    return (size_t)(hash >> 20) & (known->slot_count - 1);
+}
+
+/* Where corners are, or the empty slot where they would be. */
+static size_t find(const swarf_facets_known *known, const float corners[9], size_t at)
+{
+    while (known->slots[at] && memcmp(known->corners[known->slots[at] - 1], corners, 9 * sizeof *corners) != 0)
         at = (at + 1) & (known->slot_count - 1);
     return at;
+}
+
+typedef struct taking {
+    const swarf_facets_known *known;
+    const swarf_facets *facets;
+    size_t *first; /* slot of each facet */
+} taking;
+
+static swarf_status take_chunk(void *context, size_t index)
+{
+    const taking *t = context;
+    for (size_t f = index * CHUNK; f < (index + 1) * CHUNK && f < t->facets->facet_count; f++) {
+        corners_of(t->facets, f, t->known->corners[f]);
+        t->first[f] = first_slot(t->known, t->known->corners[f]);
+    }
+    return SWARF_OK;
 }
 
 swarf_status swarf_facets_known_take(swarf_facets_known *known, const swarf_facets *facets,
@@ -49,21 +71,28 @@ swarf_status swarf_facets_known_take(swarf_facets_known *known, const swarf_face
     known->corners = malloc((count + 1) * sizeof *known->corners);
     known->slots = calloc(slots, sizeof *known->slots);
     uint8_t *cut = calloc(count + 1, 1);
-    if (!known->corners || !known->slots || !cut) {
+    size_t *first = malloc((count + AHEAD) * sizeof *first);
+    if (!known->corners || !known->slots || !cut || !first) {
         free(cut);
+        free(first);
         swarf_facets_known_free(known);
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
     }
     known->slot_count = slots;
     for (size_t i = 0; i < pair_count; i++) cut[pairs[i].a] = cut[pairs[i].b] = 1;
-    for (size_t f = 0; f < count; f++) {
+    taking t = {known, facets, first};
+    const swarf_status status = swarf_parallel_for((count + CHUNK - 1) / CHUNK, take_chunk, &t, NULL, 0, 1);
+    memset(first + count, 0, AHEAD * sizeof *first);
+    for (size_t f = 0; f < count && status == SWARF_OK; f++) {
+        __builtin_prefetch(&known->slots[first[f + AHEAD]], 1);
         if (cut[f]) continue;
-        corners_of(facets, f, known->corners[known->count]);
-        known->slots[find(known, known->corners[known->count])] = (uint32_t)(known->count + 1);
+        known->slots[find(known, known->corners[f], first[f])] = (uint32_t)(f + 1);
         known->count++;
     }
     free(cut);
-    return SWARF_OK;
+    free(first);
+    if (status != SWARF_OK) swarf_facets_known_free(known);
+    return status;
 }
 
 typedef struct telling {
@@ -78,7 +107,7 @@ static swarf_status tell_chunk(void *context, size_t index)
     for (size_t f = index * CHUNK; f < (index + 1) * CHUNK && f < t->facets->facet_count; f++) {
         float corners[9];
         corners_of(t->facets, f, corners);
-        t->fresh[f] = !t->known->slots[find(t->known, corners)];
+        t->fresh[f] = !t->known->slots[find(t->known, corners, first_slot(t->known, corners))];
     }
     return SWARF_OK;
 }
