@@ -40,9 +40,10 @@ typedef struct job {
     uint8_t *zone;       /* of every vertex, in the last pass at a limit; else NULL */
     size_t *owned_begin; /* cubes + 1 */
     size_t *shared_begin;
-    uint32_t *owned;  /* facets by cube */
-    uint32_t *shared; /* facets that reach out of a cube */
-    size_t *gone;     /* by cube */
+    uint32_t *owned;          /* facets by cube */
+    uint32_t *shared;         /* facets that reach out of a cube */
+    size_t *gone;             /* by cube */
+    simplify_region *scratch; /* of each thread */
 } job;
 
 static uint32_t find_cube(const job *j, size_t vertex)
@@ -131,6 +132,7 @@ static void free_region(simplify_region *r)
     free(r->mark);
     free(r->need);
     free(r->facet);
+    *r = (simplify_region){0};
 }
 
 /* A facet that was left in a cube, in the numbers of the region. */
@@ -302,6 +304,29 @@ static void simplify_or_recall(const job *j, simplify_region *r, size_t cube)
     if (memo) remember(r, print, memo);
 }
 
+/* Empty the region; room for so many facets, each with corners of its own. */
+static swarf_status make_room(simplify_region *r, size_t facets)
+{
+    r->vertex_count = r->facet_count = r->owned_count = 0;
+    r->stamp = 0;
+    if (facets <= r->room) return SWARF_OK;
+    free_region(r);
+    const size_t room = facets + facets / 4, vertices = 3 * room;
+    r->xyz = malloc(3 * vertices * sizeof *r->xyz);
+    r->global = malloc(vertices * sizeof *r->global);
+    r->head = malloc(vertices * sizeof *r->head);
+    r->state = malloc(vertices);
+    r->mark = malloc(vertices * sizeof *r->mark);
+    r->need = malloc(vertices * sizeof *r->need);
+    r->facet = malloc(room * sizeof *r->facet);
+    if (!r->xyz || !r->global || !r->head || !r->state || !r->mark || !r->need || !r->facet) {
+        free_region(r);
+        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    }
+    r->room = room;
+    return SWARF_OK;
+}
+
 static swarf_status simplify_cube(void *context, size_t cube)
 {
     job *j = context;
@@ -309,28 +334,15 @@ static swarf_status simplify_cube(void *context, size_t cube)
     const size_t shared_first = cube ? j->shared_begin[cube - 1] : 0, shared = j->shared_begin[cube] - shared_first;
     j->gone[cube] = 0;
     if (owned < 4) return SWARF_OK; /* nothing to remove */
-    const size_t facets = owned + shared, vertices = 3 * facets;
-    simplify_region r = {0};
-    r.xyz = malloc(3 * vertices * sizeof *r.xyz);
-    r.global = malloc(vertices * sizeof *r.global);
-    r.head = malloc(vertices * sizeof *r.head);
-    r.state = malloc(vertices);
-    r.mark = malloc(vertices * sizeof *r.mark);
-    r.need = malloc(vertices * sizeof *r.need);
-    r.facet = malloc(facets * sizeof *r.facet);
-    swarf_status status = SWARF_OK;
-    if (!r.xyz || !r.global || !r.head || !r.state || !r.mark || !r.need || !r.facet) {
-        status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
-    } else {
-        for (size_t i = 0; i < owned; i++) add_facet(j, &r, cube, j->owned[owned_first + i], 0);
-        r.owned_count = owned;
-        for (size_t i = 0; i < shared; i++) add_facet(j, &r, cube, j->shared[shared_first + i], 1);
-        simplify_or_recall(j, &r, cube);
-        j->gone[cube] = put_back(&r, j->facets->facet);
-        for (size_t i = 0; i < r.vertex_count; i++) j->settled[r.global[i]] = r.state[i] == 0;
-    }
-    free_region(&r);
-    return status;
+    simplify_region *r = &j->scratch[swarf_parallel_slot()];
+    SWARF_TRY(make_room(r, owned + shared));
+    for (size_t i = 0; i < owned; i++) add_facet(j, r, cube, j->owned[owned_first + i], 0);
+    r->owned_count = owned;
+    for (size_t i = 0; i < shared; i++) add_facet(j, r, cube, j->shared[shared_first + i], 1);
+    simplify_or_recall(j, r, cube);
+    j->gone[cube] = put_back(r, j->facets->facet);
+    for (size_t i = 0; i < r->vertex_count; i++) j->settled[r->global[i]] = r->state[i] == 0;
+    return SWARF_OK;
 }
 
 static void drop_gone(swarf_facets *facets)
@@ -430,8 +442,10 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
     j.cube = malloc(facets->vertex_count * sizeof *j.cube);
     j.local = calloc(facets->vertex_count, sizeof *j.local);
     j.settled = malloc(facets->vertex_count);
+    const int threads = swarf_threads();
+    j.scratch = calloc((size_t)threads, sizeof *j.scratch);
     swarf_status status = SWARF_OK;
-    if (!j.cube || !j.local || !j.settled)
+    if (!j.cube || !j.local || !j.settled || !j.scratch)
         status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     if (memo && !memo->pass) memo->pass = calloc(PASSES, sizeof *memo->pass);
     if (memo && !memo->pass) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
@@ -453,6 +467,8 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
         }
         if (budget && facets->facet_count <= budget) break;
     }
+    for (int i = 0; j.scratch && i < threads; i++) free_region(&j.scratch[i]);
+    free(j.scratch);
     free(j.cube);
     free(j.local);
     free(j.settled);

@@ -31,6 +31,7 @@ typedef struct simplify_region {
     simplify_facet *facet;
     size_t facet_count;
     size_t owned_count; /* the first ones lie in the region wholly */
+    size_t room;        /* facets that there is memory for */
     uint32_t stamp;
 } simplify_region;
 
