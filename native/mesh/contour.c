@@ -219,6 +219,7 @@ typedef struct stage {
     swarf_facets *facets;
     swarf_facets_memo *memo;
     swarf_facets_known *known;
+    swarf_crease_memo *creases;
     swarf_contour_report *report;
 } stage;
 
@@ -280,8 +281,8 @@ static swarf_status attempt(const stage *s, int first, found *out)
     size_t split = 0;
     swarf_status status = SWARF_OK;
     if (fine) /* later attempts can be broken off, but get no further */
-        status =
-            swarf_contour_crease(work, s->facets, &marks, s->progress, first ? 0.7 : 0.99, first ? 0.8 : 0.99, &split);
+        status = swarf_contour_crease(work, s->facets, &marks, s->creases, s->progress, first ? 0.7 : 0.99,
+                                      first ? 0.8 : 0.99, &split);
     if (first) s->report->split_edges += split;
     swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
     if (status == SWARF_OK)
@@ -387,7 +388,8 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
 {
     swarf_facets_memo memo = {0};
     swarf_facets_known known = {0};
-    const stage s = {work, options, progress, facets, &memo, &known, report};
+    swarf_crease_memo creases = {0};
+    const stage s = {work, options, progress, facets, &memo, &known, &creases, report};
     swarf_contour_table_fill(&work->table);
     SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, progress, 0, 0.3));
     SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, progress, 0.3, 0.56));
@@ -408,6 +410,7 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
             report->surface_mm3 += work->blocks[i].within * pow(work->layout->voxel, 3);
     swarf_facets_memo_free(&memo);
     swarf_facets_known_free(&known);
+    swarf_crease_memo_free(&creases);
     SWARF_TRY(status);
     size_t own = 0;
     for (size_t f = 0; f < facets->facet_count; f++) {

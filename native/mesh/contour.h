@@ -178,9 +178,19 @@ swarf_status swarf_contour_place(contour *work, contour_block *block);
 swarf_status swarf_contour_unfold(contour *work, contour_block *block);
 swarf_status swarf_contour_tile(contour *work, contour_block *block);
 swarf_status swarf_contour_join(contour *work, contour_block *block);
+/** Which edges were split, and where, so that later attempts need not look again. Starts as zeros. */
+typedef struct swarf_crease_memo {
+    struct crease_split *splits;
+    size_t count, room;
+    uint32_t *slots; /* their numbers + 1, 0: empty */
+    size_t slot_count;
+} swarf_crease_memo;
+
+void swarf_crease_memo_free(swarf_crease_memo *memo);
+
 /** Split edges of facets that leave the exact surface where its faces meet; those of vertices whose *marks are
  *  SWARF_VERTEX_LOCKED stay. *marks (NULL: none) grow with the vertices; *made: those of this band. */
-swarf_status swarf_contour_crease(const contour *work, swarf_facets *facets, uint8_t **marks,
+swarf_status swarf_contour_crease(const contour *work, swarf_facets *facets, uint8_t **marks, swarf_crease_memo *memo,
                                   const swarf_progress *progress, double from, double to, size_t *made);
 void swarf_contour_free(contour *work);
 /** Free the blocks only. */

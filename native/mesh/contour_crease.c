@@ -4,14 +4,14 @@
  * A cell has one vertex for each cycle, so that of two edges of the surface that pass it, as the two of a narrow land
  * do, one is missed, and an edge where no crossing tells of both its faces is missed too. There a facet's edge leaves
  * the planes of the facets on both its sides. It is split where the faces meet that are seen along it, and if none do
- * at its middle, drawn onto the surface; edges that came to be by that are looked at again. Splitting an edge in both
- * its facets alike leaves the surface closed.
+ * at its middle, drawn onto the surface; edges of facets that came to be by that are looked at again, round by round.
+ * Splitting an edge in both its facets alike leaves the surface closed.
  */
+#include "mesh/crease.h"
+
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/status.h"
-#include "mesh/contour.h"
-#include "surface/surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,41 +22,13 @@
 static const double out_of_plane = 0.1, off_surface = 0.05, on_surface = 0.01, from_ends = 0.05;
 /* In voxels: how far beside an edge it may be split. */
 static const double beside = 1;
-/* A part of a facet is at least this high (in voxels) and faces as the surface does within 80 degrees. */
-static const double least_height = 1e-3, least_cosine = 0.17;
 /* Splits are drawn this part of the way to the middle of the facets' other vertices, so that those of two edges that
  * lie above each other part. */
 static const double spread = 0.5;
-/* An edge over a narrow land is split at one side of it, then at the other. */
-enum { ROUNDS = 3, CHUNK = 64 };
+/* An edge over a narrow land is split at one side of it, then at the other, and so are those that come of that. */
+enum { ROUNDS = 6 };
 /* Where along an edge faces are looked for: a narrow one is seen from near its end only. */
 static const double samples[] = {0.05, 0.25, 0.5, 0.75, 0.95};
-
-/* An edge from its lesser to its greater vertex, and the facet it is of. */
-typedef struct steep_edge {
-    uint32_t v[2];
-    uint32_t facet;
-    uint32_t corner; /* where it starts in the facet */
-} steep_edge;
-
-typedef struct splitting {
-    const contour *work;
-    const swarf_facets *facets;
-    steep_edge *edges; /* of two facets each, one after the other */
-    size_t count;      /* of pairs */
-    double (*points)[3];
-    uint8_t *made;
-} splitting;
-
-static void place(const swarf_facets *facets, uint32_t v, double out[3])
-{
-    for (size_t k = 0; k < 3; k++) out[k] = (double)facets->xyz[3 * (size_t)v + k];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* The edges of a facet that leave its plane, a bit each. */
 static unsigned find_steep(const swarf_facets *facets, const swarf_facet *facet, double voxel)
@@ -76,7 +48,7 @@ static unsigned find_steep(const swarf_facets *facets, const swarf_facet *facet,
 
 static int by_vertices(const void *a, const void *b)
 {
-    const steep_edge *x = a, *y = b;
+    const crease_edge *x = a, *y = b;
     for (int k = 0; k < 2; k++)
         if (x->v[k] != y->v[k]) return x->v[k] < y->v[k] ? -1 : 1;
     return x->facet < y->facet ? -1 : x->facet > y->facet;
@@ -85,7 +57,7 @@ static int by_vertices(const void *a, const void *b)
 /* ---- one edge ---------------------------------------------------------------------------------------------------- */
 
 typedef struct looking {
-    swarf_surface_near *near;
+    const crease_look *look;
     double voxel;
     double p[3], q[3], aside[3];
     swarf_box box;
@@ -96,11 +68,9 @@ static void along(const looking *l, double s, double out[3])
     for (int k = 0; k < 3; k++) out[k] = l->p[k] + s * (l->q[k] - l->p[k]);
 }
 
-/* Value at a point, in voxels. */
 static double look(const looking *l, const double x[3], swarf_surface_point *found)
 {
-    swarf_surface_evaluate(l->near, x, found);
-    return found->value / l->voxel;
+    return swarf_crease_look_at(l->look, x, found);
 }
 
 /* Draw a point onto the surface, within the box. */
@@ -117,8 +87,8 @@ static int draw_onto(const looking *l, double x[3], swarf_surface_point *found)
     return fabs(value) <= 1e-3;
 }
 
-/* Whether both ends are on the surface and it is away from what is between them. */
-static int is_off(const looking *l)
+/* How far (in voxels) the surface is from what is between the ends; 0 when they are not on it. */
+static double find_off(const looking *l)
 {
     swarf_surface_point found;
     double most = 0;
@@ -128,7 +98,7 @@ static int is_off(const looking *l)
         along(l, 0.25 * i, x);
         most = fmax(most, fabs(look(l, x, &found)));
     }
-    return most > off_surface;
+    return most;
 }
 
 static int is_between(const looking *l, const double x[3])
@@ -156,7 +126,7 @@ static int meet_along(const looking *l, double out[3])
         if (!draw_onto(l, x, &found)) continue;
         const int n = polygon.count++;
         for (int k = 0; k < 3; k++) {
-            const double aside = l->aside[k] - dot(l->aside, found.normal) * found.normal[k];
+            const double aside = l->aside[k] - swarf_crease_dot(l->aside, found.normal) * found.normal[k];
             polygon.point[n][k] = (x[k] + aside - l->box.lo[k]) / l->voxel;
             polygon.normal[n][k] = found.normal[k];
         }
@@ -164,50 +134,65 @@ static int meet_along(const looking *l, double out[3])
         polygon.piece[n] = found.piece;
     }
     double x[3];
-    if (polygon.count < 2 || swarf_contour_vertex_exact(&polygon, l->near, x) < 2) return 0;
+    if (polygon.count < 2 || swarf_contour_vertex_exact(&polygon, l->look->near, x) < 2) return 0;
     for (int k = 0; k < 3; k++) out[k] = polygon.origin[k] + x[k] * l->voxel;
     return is_between(l, out);
 }
 
-static swarf_status split_edge(const splitting *s, swarf_surface_near *near, size_t pair)
+/* The corners of an edge and of its facets. */
+static void find_corners(const crease_splits *s, const crease_edge edge[2], float out[12])
 {
-    const steep_edge *edge = &s->edges[2 * pair];
-    const double voxel = s->work->layout->voxel;
-    looking l = {.near = near, .voxel = voxel};
-    place(s->facets, edge->v[0], l.p);
-    place(s->facets, edge->v[1], l.q);
+    const uint32_t v[4] = {edge->v[0], edge->v[1], s->facets->facet[edge[0].facet].v[(edge[0].corner + 2) % 3],
+                           s->facets->facet[edge[1].facet].v[(edge[1].corner + 2) % 3]};
+    for (int k = 0; k < 4; k++) memcpy(out + 3 * (size_t)k, s->facets->xyz + 3 * (size_t)v[k], 3 * sizeof *out);
+}
+
+static void begin_edge(const float corners[12], double voxel, looking *l)
+{
     for (int k = 0; k < 3; k++) {
-        l.box.lo[k] = fmin(l.p[k], l.q[k]) - beside * voxel;
-        l.box.hi[k] = fmax(l.p[k], l.q[k]) + beside * voxel;
+        l->p[k] = (double)corners[k];
+        l->q[k] = (double)corners[3 + k];
+        l->aside[k] = 0.5 * spread * ((double)corners[6 + k] + (double)corners[9 + k] - (l->p[k] + l->q[k]));
+        l->box.lo[k] = fmin(l->p[k], l->q[k]) - beside * voxel;
+        l->box.hi[k] = fmax(l->p[k], l->q[k]) + beside * voxel;
     }
-    for (int i = 0; i < 2; i++) {
-        double third[3];
-        place(s->facets, s->facets->facet[edge[i].facet].v[(edge[i].corner + 2) % 3], third);
-        for (int k = 0; k < 3; k++) l.aside[k] += 0.5 * spread * (third[k] - 0.5 * (l.p[k] + l.q[k]));
+}
+
+static swarf_status split_edge(const crease_splits *s, crease_look *near, size_t pair)
+{
+    crease_split *split = &s->split[pair];
+    looking l = {.look = near, .voxel = s->work->layout->voxel};
+    find_corners(s, &s->edges[2 * pair], split->corners);
+    const crease_split *known = swarf_crease_recall(s->memo, split->corners);
+    if (known) {
+        *split = *known;
+        return SWARF_OK;
     }
-    SWARF_TRY(swarf_surface_gather(near, s->work->moves, &l.box));
-    if (!is_off(&l)) return SWARF_OK;
+    begin_edge(split->corners, l.voxel, &l);
+    SWARF_TRY(swarf_crease_look_into(near, &l.box));
+    split->off = (float)find_off(&l);
+    if ((double)split->off <= off_surface) return SWARF_OK;
     double x[3];
     swarf_surface_point found;
-    int made = meet_along(&l, x);
-    if (!made) {
+    split->made = (uint8_t)meet_along(&l, x);
+    if (!split->made) {
         along(&l, 0.5, x);
-        made = draw_onto(&l, x, &found) && is_between(&l, x);
+        split->made = draw_onto(&l, x, &found) && is_between(&l, x);
     }
-    s->made[pair] = (uint8_t)made;
-    memcpy(s->points[pair], x, sizeof x);
+    for (int k = 0; k < 3; k++) split->point[k] = (float)x[k];
     return SWARF_OK;
 }
 
 static swarf_status split_some(void *context, size_t index)
 {
-    const splitting *s = context;
-    swarf_surface_near *near;
-    SWARF_TRY(swarf_surface_near_create(s->work->surface, &near));
+    const crease_splits *s = context;
+    crease_look near;
+    SWARF_TRY(swarf_crease_look_begin(s->work, &near));
     swarf_status status = SWARF_OK;
-    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < s->count && status == SWARF_OK; i++)
-        status = split_edge(s, near, i);
-    swarf_surface_near_destroy(near);
+    for (size_t i = index * SWARF_CREASE_CHUNK;
+         i < (index + 1) * SWARF_CREASE_CHUNK && i < s->count && status == SWARF_OK; i++)
+        status = split_edge(s, &near, i);
+    swarf_crease_look_end(&near);
     return status;
 }
 
@@ -218,7 +203,7 @@ typedef struct finding {
     const uint8_t *marks; /* of vertices, NULL: none */
     double voxel;
     size_t *first;         /* of the edges of each piece; at first how many */
-    steep_edge *edges;     /* that are put, NULL: they are counted */
+    crease_edge *edges;    /* that are put, NULL: they are counted */
     const uint8_t *chosen; /* vertices of steep edges; NULL: edges are steep in their own facet */
 } finding;
 
@@ -239,6 +224,14 @@ static unsigned find_edges(const finding *s, const swarf_facet *facet)
     return found;
 }
 
+/* The edge of the lowest bit. */
+static crease_edge edge_of(const swarf_facets *facets, uint32_t f, unsigned bits)
+{
+    const uint32_t k = (uint32_t)__builtin_ctz(bits);
+    const uint32_t a = facets->facet[f].v[k], b = facets->facet[f].v[(k + 1) % 3];
+    return (crease_edge){{a < b ? a : b, a < b ? b : a}, f, k};
+}
+
 static swarf_status find_some(void *context, size_t index)
 {
     const finding *s = context;
@@ -248,16 +241,14 @@ static swarf_status find_some(void *context, size_t index)
     for (size_t f = index * PIECE; f < (index + 1) * PIECE && f < facets->facet_count; f++)
         for (unsigned left = find_edges(s, &facets->facet[f]); left; left &= left - 1, count++) {
             if (!s->edges) continue;
-            const uint32_t k = (uint32_t)__builtin_ctz(left);
-            const uint32_t a = facets->facet[f].v[k], b = facets->facet[f].v[(k + 1) % 3];
-            s->edges[s->first[index] + count] = (steep_edge){{a < b ? a : b, a < b ? b : a}, (uint32_t)f, k};
+            s->edges[s->first[index] + count] = edge_of(facets, (uint32_t)f, left);
         }
     if (!s->edges) s->first[index] = count;
     return SWARF_OK;
 }
 
 /* The edges of all facets that are looked for. */
-static swarf_status list_edges(finding *s, steep_edge **edges, size_t *count)
+static swarf_status list_edges(finding *s, crease_edge **edges, size_t *count)
 {
     const size_t pieces = (s->facets->facet_count + PIECE - 1) / PIECE;
     s->edges = NULL;
@@ -284,34 +275,93 @@ static swarf_status list_edges(finding *s, steep_edge **edges, size_t *count)
     return SWARF_OK;
 }
 
-static int is_same(const steep_edge *a, const steep_edge *b)
+static int is_same(const crease_edge *a, const crease_edge *b)
 {
     return memcmp(a->v, b->v, sizeof a->v) == 0;
 }
 
-/* Edges that are steep on one of their sides at least, in both facets. */
+/* The edges of the facets listed that are steep. */
+static swarf_status list_changed(const finding *s, const uint32_t *changed, size_t changed_count, crease_edge **edges,
+                                 size_t *count)
+{
+    crease_edge *list = malloc((3 * changed_count + 1) * sizeof *list);
+    if (!list) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    size_t all = 0;
+    for (size_t i = 0; i < changed_count; i++)
+        for (unsigned left = find_edges(s, &s->facets->facet[changed[i]]); left; left &= left - 1)
+            list[all++] = edge_of(s->facets, changed[i], left);
+    if (all) qsort(list, all, sizeof *list, by_vertices);
+    *edges = list;
+    *count = all;
+    return SWARF_OK;
+}
+
+typedef struct keyed {
+    uint64_t cube;
+    crease_edge pair[2];
+} keyed;
+
+static int by_cube(const void *a, const void *b)
+{
+    const keyed *x = a, *y = b;
+    if (x->cube != y->cube) return x->cube < y->cube ? -1 : 1;
+    return by_vertices(x->pair, y->pair);
+}
+
+/* Those of a cube together. */
+static swarf_status sort_pairs(const contour *work, const swarf_facets *facets, crease_edge *edges, size_t count)
+{
+    keyed *pairs = malloc((count + 1) * sizeof *pairs);
+    if (!pairs) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    for (size_t i = 0; i < count; i++) {
+        double p[3], q[3];
+        swarf_crease_place(facets, edges[2 * i].v[0], p);
+        swarf_crease_place(facets, edges[2 * i].v[1], q);
+        for (int k = 0; k < 3; k++) p[k] = 0.5 * (p[k] + q[k]);
+        pairs[i].cube = swarf_crease_cube(work, p, 0, 0, 0);
+        memcpy(pairs[i].pair, &edges[2 * i], sizeof pairs[i].pair);
+    }
+    if (count) qsort(pairs, count, sizeof *pairs, by_cube);
+    for (size_t i = 0; i < count; i++) memcpy(&edges[2 * i], pairs[i].pair, sizeof pairs[i].pair);
+    free(pairs);
+    return SWARF_OK;
+}
+
+/* Edges, of `both` of their facets each, that are among the steep ones; returns how many. */
+static size_t keep_steep(const crease_edge *steep, size_t steep_count, crease_edge *both, size_t count)
+{
+    size_t next = 0, kept = 0;
+    for (size_t i = 0; i + 1 < count; i++) {
+        if (!is_same(&both[i], &both[i + 1])) continue;
+        while (next < steep_count && by_vertices(&steep[next], &both[i]) < 0 && !is_same(&steep[next], &both[i]))
+            next++;
+        if (next < steep_count && is_same(&steep[next], &both[i])) {
+            both[2 * kept] = both[i];
+            both[2 * kept++ + 1] = both[i + 1];
+        }
+        i++;
+    }
+    return kept;
+}
+
+/* Edges that are steep on one of their sides at least, in both facets: of the facets listed, or (NULL) of all. */
 static swarf_status find_pairs(const contour *work, const swarf_facets *facets, const uint8_t *marks,
-                               steep_edge **edges, size_t *count)
+                               const uint32_t *changed, size_t changed_count, crease_edge **edges, size_t *count)
 {
     finding s = {.facets = facets, .marks = marks, .voxel = work->layout->voxel};
-    steep_edge *steep, *both = NULL;
-    size_t steep_count, all = 0, next = 0, paired = 0;
-    SWARF_TRY(list_edges(&s, &steep, &steep_count));
+    crease_edge *steep, *both = NULL;
+    size_t steep_count, all = 0;
+    if (changed)
+        SWARF_TRY(list_changed(&s, changed, changed_count, &steep, &steep_count));
+    else
+        SWARF_TRY(list_edges(&s, &steep, &steep_count));
     uint8_t *chosen = calloc(facets->vertex_count + 1, 1);
     swarf_status status = chosen ? SWARF_OK : swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     for (size_t i = 0; i < steep_count && chosen; i++) chosen[steep[i].v[0]] = chosen[steep[i].v[1]] = 1;
     s.chosen = chosen;
     if (status == SWARF_OK && steep_count) status = list_edges(&s, &both, &all);
-    for (size_t i = 0; i + 1 < all; i++) {
-        if (!is_same(&both[i], &both[i + 1])) continue;
-        while (next < steep_count && by_vertices(&steep[next], &both[i]) < 0 && !is_same(&steep[next], &both[i]))
-            next++;
-        if (next < steep_count && is_same(&steep[next], &both[i])) {
-            both[2 * paired] = both[i];
-            both[2 * paired++ + 1] = both[i + 1];
-        }
-        i++;
-    }
+    const size_t paired = keep_steep(steep, steep_count, both, all);
+    if (status == SWARF_OK) status = sort_pairs(work, facets, both, paired);
     free(chosen);
     free(steep);
     if (status != SWARF_OK) {
@@ -323,263 +373,86 @@ static swarf_status find_pairs(const contour *work, const swarf_facets *facets, 
     return SWARF_OK;
 }
 
-/* ---- facets ------------------------------------------------------------------------------------------------------ */
+/* ---- rounds ------------------------------------------------------------------------------------------------------ */
 
-enum { NONE = UINT32_MAX };
-
-/* A facet one to three edges of which are split. */
-typedef struct cut_facet {
+/* How far an edge of a facet was from the surface that was not split. */
+typedef struct rest {
     uint32_t facet;
-    uint32_t at[3]; /* pairs that split its edges, NONE */
-    int parts;      /* it becomes; 0: they turn over */
-    swarf_facet part[4];
-} cut_facet;
+    float off;
+} rest;
 
-/* Points on split edges are there as vertices after the others, by the number of the pair. */
-typedef struct cutting {
-    const splitting *splits;
-    cut_facet *cuts;
-    size_t count;
-} cutting;
+/* Facets that the last round changed, NULL: all are to be looked at; and what is left of all rounds. */
+typedef struct rounds {
+    uint32_t *changed;
+    size_t changed_count;
+    rest *rests;
+    size_t rest_count, rest_room;
+} rounds;
 
-/* How far the surface is from the middle between two vertices. */
-static double off_middle(const looking *l, const swarf_facets *facets, uint32_t a, uint32_t b)
+static swarf_status keep_rests(const crease_splits *s, rounds *r)
 {
-    double p[3], q[3], x[3];
-    swarf_surface_point found;
-    place(facets, a, p);
-    place(facets, b, q);
-    for (int k = 0; k < 3; k++) x[k] = 0.5 * (p[k] + q[k]);
-    return fabs(look(l, x, &found));
-}
-
-/* How well a part faces the way that the surface does there: the best cosine at its middle and towards its corners,
- * as it may lie near several faces. */
-static double facing(const looking *l, double p[3][3], const double n[3], double best[3])
-{
-    double most = -1;
-    for (int at = 0; at < 4; at++) {
-        double x[3];
-        swarf_surface_point found;
-        for (int k = 0; k < 3; k++)
-            x[k] = at == 3 ? (p[0][k] + p[1][k] + p[2][k]) / 3
-                           : 0.8 * p[at][k] + 0.1 * (p[(at + 1) % 3][k] + p[(at + 2) % 3][k]);
-        look(l, x, &found);
-        const double cosine = dot(n, found.normal);
-        if (cosine <= most) continue;
-        most = cosine;
-        memcpy(best, found.normal, sizeof found.normal);
-    }
-    return most;
-}
-
-/* Add a part with the normal of the surface there; 0 when that is another way than its own. */
-static int add_part(const looking *l, const swarf_facets *facets, cut_facet *cut, uint32_t a, uint32_t b, uint32_t c)
-{
-    const uint32_t v[3] = {a, b, c};
-    double p[3][3], u[3], w[3], normal[3], longest = 0;
-    for (int k = 0; k < 3; k++) place(facets, v[k], p[k]);
-    for (int k = 0; k < 3; k++) {
-        u[k] = p[1][k] - p[0][k];
-        w[k] = p[2][k] - p[0][k];
-        longest += u[k] * u[k] + w[k] * w[k];
-    }
-    double n[3] = {u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]};
-    const double size = sqrt(dot(n, n));
-    if (!(size > least_height * l->voxel * sqrt(longest))) return 0;
-    for (int k = 0; k < 3; k++) n[k] /= size;
-    if (facing(l, p, n, normal) < least_cosine) return 0;
-    swarf_facet *part = &cut->part[cut->parts++];
-    *part = facets->facet[cut->facet];
-    memcpy(part->v, v, sizeof part->v);
-    for (int k = 0; k < 3; k++) part->normal[k] = (int16_t)lrint(normal[k] * 32767);
-    return 1;
-}
-
-static int add_quad(const looking *l, const swarf_facets *facets, cut_facet *cut, const uint32_t q[4])
-{
-    const int d = off_middle(l, facets, q[1], q[3]) < off_middle(l, facets, q[0], q[2]);
-    return add_part(l, facets, cut, q[d], q[d + 1], q[d + 2]) &&
-           add_part(l, facets, cut, q[d], q[d + 2], q[(d + 3) % 4]);
-}
-
-/* The parts of a facet; 0 when one would turn over. */
-static int cut_up(const looking *l, const swarf_facets *facets, cut_facet *cut)
-{
-    int splits = 0;
-    uint32_t turn = 0; /* so that the first edge is split, and the last one is not, if any */
-    for (uint32_t k = 0; k < 3; k++) {
-        splits += cut->at[k] != NONE;
-        if (cut->at[k] != NONE && cut->at[(k + 2) % 3] == NONE) turn = k;
-    }
-    uint32_t v[3], x[3];
-    for (uint32_t k = 0; k < 3; k++) {
-        v[k] = facets->facet[cut->facet].v[(turn + k) % 3];
-        x[k] = (uint32_t)facets->vertex_count + cut->at[(turn + k) % 3];
-    }
-    if (splits == 1) return add_part(l, facets, cut, v[0], x[0], v[2]) && add_part(l, facets, cut, x[0], v[1], v[2]);
-    if (!add_part(l, facets, cut, x[0], v[1], x[1])) return 0;
-    if (splits == 2) return add_quad(l, facets, cut, (uint32_t[4]){v[0], x[0], x[1], v[2]});
-    return add_part(l, facets, cut, v[0], x[0], x[2]) && add_part(l, facets, cut, x[1], v[2], x[2]) &&
-           add_part(l, facets, cut, x[0], x[1], x[2]);
-}
-
-static swarf_status cut_one(const splitting *s, looking *l, cut_facet *cut)
-{
-    const swarf_facets *facets = s->facets;
-    swarf_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (size_t k = 0; k < 6; k++) {
-        if (k >= 3 && cut->at[k - 3] == NONE) continue;
-        double p[3];
-        place(facets, k < 3 ? facets->facet[cut->facet].v[k] : (uint32_t)facets->vertex_count + cut->at[k - 3], p);
-        for (int c = 0; c < 3; c++) {
-            box.lo[c] = fmin(box.lo[c], p[c]);
-            box.hi[c] = fmax(box.hi[c], p[c]);
-        }
-    }
-    SWARF_TRY(swarf_surface_gather(l->near, s->work->moves, &box));
-    cut->parts = 0;
-    if (!cut_up(l, facets, cut)) cut->parts = 0;
+    SWARF_TRY(swarf_array_reserve((void **)&r->rests, &r->rest_room, r->rest_count + 2 * s->count, sizeof *r->rests));
+    for (size_t i = 0; i < 2 * s->count; i++)
+        if (!s->split[i / 2].made && s->split[i / 2].off > 0)
+            r->rests[r->rest_count++] = (rest){s->edges[i].facet, s->split[i / 2].off};
     return SWARF_OK;
 }
 
-static swarf_status cut_some(void *context, size_t index)
+/* What is left counts as spent. */
+static void spend_rests(const contour *work, const rounds *r, swarf_facets *facets)
 {
-    const cutting *c = context;
-    looking l = {.voxel = c->splits->work->layout->voxel};
-    SWARF_TRY(swarf_surface_near_create(c->splits->work->surface, &l.near));
-    swarf_status status = SWARF_OK;
-    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < c->count && status == SWARF_OK; i++)
-        status = cut_one(c->splits, &l, &c->cuts[i]);
-    swarf_surface_near_destroy(l.near);
-    return status;
-}
-
-static int by_facet(const void *a, const void *b)
-{
-    const cut_facet *x = a, *y = b;
-    return (x->facet > y->facet) - (x->facet < y->facet);
-}
-
-/* The facets of edges that are split, each once. */
-static size_t list_cuts(const splitting *s, cut_facet *cuts)
-{
-    size_t count = 0, kept = 0;
-    for (size_t i = 0; i < 2 * s->count; i++) {
-        if (!s->made[i / 2]) continue;
-        cuts[count] = (cut_facet){.facet = s->edges[i].facet, .at = {NONE, NONE, NONE}};
-        cuts[count++].at[s->edges[i].corner] = (uint32_t)(i / 2);
+    float most = (float)work->error_mm;
+    if ((double)most > work->error_mm) most = nextafterf(most, 0);
+    for (size_t i = 0; i < r->rest_count; i++) {
+        swarf_facet *facet = &facets->facet[r->rests[i].facet];
+        facet->error_mm = fmaxf(facet->error_mm, fminf(r->rests[i].off * (float)work->layout->voxel, most));
     }
-    if (count) qsort(cuts, count, sizeof *cuts, by_facet);
-    for (size_t i = 0; i < count; i++) {
-        if (kept == 0 || cuts[kept - 1].facet != cuts[i].facet) {
-            cuts[kept++] = cuts[i];
-            continue;
-        }
-        for (int k = 0; k < 3; k++)
-            if (cuts[i].at[k] != NONE) cuts[kept - 1].at[k] = cuts[i].at[k];
-    }
-    return kept;
-}
-
-/* Cut up the facets, less the splits of those that would turn over. */
-static swarf_status cut_facets(const splitting *s, cutting *c, const swarf_progress *progress)
-{
-    for (int again = 1, first = 1; again; first = 0) {
-        again = 0;
-        c->count = list_cuts(s, c->cuts);
-        SWARF_TRY(swarf_parallel_for((c->count + CHUNK - 1) / CHUNK, cut_some, c, progress, first ? 0.5 : 1, 1));
-        for (size_t i = 0; i < c->count; i++) {
-            if (c->cuts[i].parts) continue;
-            again = 1;
-            for (int k = 0; k < 3; k++)
-                if (c->cuts[i].at[k] != NONE) s->made[c->cuts[i].at[k]] = 0;
-        }
-    }
-    return SWARF_OK;
-}
-
-/* Room for all vertices and facets that there may be. */
-static swarf_status grow(swarf_facets *facets, size_t pairs, uint8_t **marks)
-{
-    const size_t all = facets->vertex_count + pairs;
-    float *xyz = realloc(facets->xyz, (3 * all + 1) * sizeof *xyz);
-    if (xyz) facets->xyz = xyz;
-    swarf_facet *facet = realloc(facets->facet, (facets->facet_count + 2 * pairs + 1) * sizeof *facet);
-    if (facet) facets->facet = facet;
-    uint8_t *grown = *marks ? realloc(*marks, all + 1) : NULL;
-    if (grown) *marks = grown;
-    if (!xyz || !facet || (*marks && !grown) || all >= UINT32_MAX || facets->facet_count + 2 * pairs >= UINT32_MAX)
-        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for vertices");
-    return SWARF_OK;
-}
-
-/* The vertices on edges that are split, and the parts of their facets, into the mesh; returns how many are not of the
- * next band. */
-static size_t put_in(const splitting *s, const cutting *c, swarf_facets *facets, uint8_t *marks, uint32_t *number)
-{
-    const size_t before = facets->vertex_count;
-    size_t made = 0, own = 0;
-    for (size_t i = 0; i < s->count; i++) {
-        if (!s->made[i]) continue;
-        memmove(facets->xyz + 3 * (before + made), facets->xyz + 3 * (before + i), 3 * sizeof *facets->xyz);
-        if (marks) marks[before + made] = 0;
-        number[i] = (uint32_t)(before + made++);
-        own += !facets->facet[s->edges[2 * i].facet].beyond;
-    }
-    for (size_t i = 0; i < c->count; i++) {
-        cut_facet *cut = &c->cuts[i];
-        for (int n = 0; n < cut->parts; n++) {
-            for (int k = 0; k < 3; k++)
-                if (cut->part[n].v[k] >= before) cut->part[n].v[k] = number[cut->part[n].v[k] - before];
-            facets->facet[n == 0 ? cut->facet : facets->facet_count++] = cut->part[n];
-        }
-    }
-    facets->vertex_count += made;
-    return own;
 }
 
 /* Split what edges there are to be split. */
-static swarf_status split_facets(splitting *s, swarf_facets *facets, uint8_t **marks, const swarf_progress *progress,
-                                 size_t *made)
+static swarf_status split_edges(crease_splits *s, swarf_facets *facets, uint8_t **marks, swarf_crease_memo *memo,
+                                const swarf_progress *progress, rounds *r, size_t *made)
 {
-    s->points = calloc(s->count + 1, sizeof *s->points);
-    s->made = calloc(s->count + 1, 1);
-    cutting c = {.splits = s, .cuts = malloc((2 * s->count + 1) * sizeof *c.cuts)};
-    uint32_t *number = malloc((s->count + 1) * sizeof *number);
-    swarf_status status = SWARF_OK;
-    if (!s->points || !s->made || !c.cuts || !number) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
-    if (status == SWARF_OK)
-        status = swarf_parallel_for((s->count + CHUNK - 1) / CHUNK, split_some, s, progress, 0, 0.5);
-    if (status == SWARF_OK) status = grow(facets, s->count, marks);
-    for (size_t i = 0; i < s->count && status == SWARF_OK; i++)
-        for (size_t k = 0; k < 3; k++) facets->xyz[3 * (facets->vertex_count + i) + k] = (float)s->points[i][k];
-    if (status == SWARF_OK) status = cut_facets(s, &c, progress);
-    if (status == SWARF_OK) *made = put_in(s, &c, facets, *marks, number);
-    free(s->points);
-    free(s->made);
-    free(c.cuts);
-    free(number);
-    return status;
+    uint32_t *changed = NULL;
+    size_t count = 0;
+    s->split = calloc(s->count + 1, sizeof *s->split);
+    if (!s->split) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
+    s->memo = memo;
+    swarf_status status =
+        swarf_parallel_for((s->count + SWARF_CREASE_CHUNK - 1) / SWARF_CREASE_CHUNK, split_some, s, progress, 0, 0.5);
+    if (status == SWARF_OK) status = swarf_crease_remember(memo, s->split, s->count);
+    if (status == SWARF_OK) status = swarf_crease_cut(s, facets, marks, progress, 0.5, &changed, &count, made);
+    if (status == SWARF_OK) status = keep_rests(s, r);
+    free(s->split);
+    if (status != SWARF_OK) {
+        free(changed);
+        return status;
+    }
+    free(r->changed);
+    r->changed = changed;
+    r->changed_count = count;
+    return SWARF_OK;
 }
 
-swarf_status swarf_contour_crease(const contour *work, swarf_facets *facets, uint8_t **marks,
+swarf_status swarf_contour_crease(const contour *work, swarf_facets *facets, uint8_t **marks, swarf_crease_memo *memo,
                                   const swarf_progress *progress, double from, double to, size_t *made)
 {
     *made = 0;
-    size_t before = 0;
-    for (int round = 0; round < ROUNDS && before != facets->vertex_count; round++) {
-        splitting s = {.work = work, .facets = facets};
+    rounds r = {0};
+    swarf_status status = SWARF_OK;
+    for (int round = 0; status == SWARF_OK && round < ROUNDS && (round == 0 || r.changed_count); round++) {
+        crease_splits s = {.work = work, .facets = facets};
         swarf_progress_share share = {progress, from + round * (to - from) / ROUNDS,
                                       from + (round + 1) * (to - from) / ROUNDS};
         const swarf_progress part = swarf_progress_part(&share);
         size_t own = 0;
-        before = facets->vertex_count;
-        SWARF_TRY(find_pairs(work, facets, *marks, &s.edges, &s.count));
-        const swarf_status status = s.count ? split_facets(&s, facets, marks, progress ? &part : NULL, &own) : SWARF_OK;
+        status = find_pairs(work, facets, *marks, r.changed, r.changed_count, &s.edges, &s.count);
+        if (status == SWARF_OK) status = split_edges(&s, facets, marks, memo, progress ? &part : NULL, &r, &own);
         free(s.edges);
-        SWARF_TRY(status);
         *made += own;
     }
-    return SWARF_OK;
+    if (status == SWARF_OK) spend_rests(work, &r, facets);
+    free(r.changed);
+    free(r.rests);
+    return status;
 }

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Random stocks, mostly far too coarse for what was cut, so that cells of all kinds occur: the mesh is always a closed
  * oriented 2-manifold whose triangles do not cut each other, with and without simplifying, of about the field's
- * volume, and simplifying keeps the number of shells and holes. */
+ * volume, and simplifying keeps the number of shells and holes. Where edges are split more of the exact surface is
+ * there, and next to none of the triangles made cut others. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cuts.h"
 #include "stocks.h"
@@ -69,10 +71,50 @@ static void check_cancel(swarf_stock *stock, const swarf_surface *surface)
     CHECK_OK(swarf_progress_interval_set(100));
 }
 
+enum { POINTS = 2000, PLAIN = 2, FINE = 4 };
+
+/* Points of the exact surface, found along random lines; returns how many. */
+static int find_points(const swarf_surface *surface, const swarf_mesh *mesh, test_random *random,
+                       double points[POINTS][3])
+{
+    static double from[POINTS][3], along[POINTS][3];
+    static int64_t moves[POINTS];
+    const swarf_triangles t = swarf_mesh_triangles(mesh);
+    int count = 0;
+    for (int i = 0; i < POINTS; i++) {
+        const float *near = t.xyz + 3 * test_random_below(random, t.vertex_count);
+        for (int k = 0; k < 3; k++) {
+            from[i][k] = (double)near[k] + test_random_in(random, -0.5, 0.5);
+            along[i][k] = test_random_in(random, -1, 1);
+        }
+    }
+    CHECK_OK(swarf_surface_refine(surface, SIZE_MAX, from[0], along[0], POINTS, 1, NULL, from[0], NULL, moves));
+    for (int i = 0; i < POINTS; i++)
+        if (moves[i] != -2) memcpy(points[count++], from[i], sizeof *points);
+    return count;
+}
+
+/* How many of the points are farther from the mesh than a tenth of a voxel. */
+static int count_beyond(const swarf_mesh *mesh, const double points[POINTS][3], int count, double voxel)
+{
+    static double distance[POINTS];
+    const swarf_triangles t = swarf_mesh_triangles(mesh);
+    swarf_solid *solid = NULL;
+    int beyond = 0;
+    if (CHECK_OK(swarf_solid_create(&t, NULL, &solid)))
+        CHECK_OK(swarf_solid_distance(solid, points[0], (size_t)count, NULL, distance, NULL));
+    for (int i = 0; solid && i < count; i++) beyond += fabs(distance[i]) > 0.1 * voxel;
+    swarf_solid_release(solid);
+    return beyond;
+}
+
 int main(void)
 {
+    static double points[POINTS][3];
+    int beyond[2] = {0};
+    size_t crossed[2] = {0};
     check_count();
-    test_random random = test_random_begin(20);
+    test_random random = test_random_begin(20), points_random = test_random_begin(21);
     const char *count_text = getenv("SWARF_COUNT");
     const int count = count_text ? atoi(count_text) : 25;
     for (int i = 0; i < count; i++) {
@@ -82,6 +124,7 @@ int main(void)
         double volume = 0;
         CHECK_OK(swarf_stock_volume(stock, &volume));
         long full_euler = 0;
+        int point_count = 0;
         for (int kind = 0; kind < 6; kind++) {
             const int simple = kind & 1, exact = kind > 1;
             swarf_contour_options options = swarf_contour_options_default();
@@ -108,11 +151,20 @@ int main(void)
                 CHECK(euler_number(mesh) == full_euler);
             else
                 full_euler = euler_number(mesh);
+            if (report.triangles && kind == PLAIN) point_count = find_points(surface, mesh, &points_random, points);
+            if (report.triangles && (kind == PLAIN || kind == FINE)) {
+                beyond[kind == FINE] += count_beyond(mesh, points, point_count, voxel);
+                crossed[kind == FINE] += report.intersections_found;
+            }
             swarf_mesh_release(mesh);
         }
         if (i < 3) check_cancel(stock, surface);
         swarf_surface_release(surface);
         swarf_stock_destroy(stock);
     }
+    printf("%d points of the surface beyond a tenth of a voxel, fine %d; %zu pairs cut each other, fine %zu\n",
+           beyond[0], beyond[1], crossed[0], crossed[1]);
+    CHECK(beyond[1] < 0.65 * beyond[0]);
+    CHECK(crossed[1] <= crossed[0] + crossed[0] / 4);
     return test_end();
 }

@@ -347,8 +347,8 @@ static swarf_program *make_program(const part *t)
  * or chip narrower than a voxel, in which no voxel's centre lies, and which end more than a cell away from the next:
  * sharp undercuts, threads. Twice what was seen with all motions. Without `fine` it was 0.234 for the thread mill, two
  * edges of which pass one cell all along its roots, 0.047 for the dovetail and 0.020 for the point. */
-static const double beyond_allowed[CASE_CUTTERS] = {0.005, 0.002, 0.002, 0.006, 0.002, 0.004, 0.002,
-                                                    0.002, 0.03,  0.008, 0.02,  0.08,  0.006, 0.008};
+static const double beyond_allowed[CASE_CUTTERS] = {0.005, 0.002, 0.002, 0.004, 0.002, 0.004, 0.002,
+                                                    0.002, 0.03,  0.008, 0.02,  0.044, 0.002, 0.008};
 
 /* Simplified by an error, the mesh is within that of the true surface both ways. */
 static void check_reach(int index, const char *name, const part *truth, swarf_stock *stock,

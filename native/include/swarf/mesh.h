@@ -27,8 +27,9 @@ typedef struct swarf_contour_options {
     const swarf_surface *surface; /**< of the stock, borrowed for the call; NULL: the field alone */
     size_t moves;                 /**< the stock is the surface after its first so many moves */
     /** 0 or 1. 1: triangles that leave the surface, as beside edges closer to each other than a voxel and at wedges
-     *  narrower than one, are split where its faces meet; no effect without a surface. On a part with many such edges
-     *  it takes several times as long. In bands the row of cells beside each plane between two stays as it is. */
+     *  narrower than one, are split where its faces meet; no effect without a surface. It takes half as long again on
+     *  a large part, several times as long where most of the surface is such edges. In bands the row of cells beside
+     *  each plane between two stays as it is. */
     int fine;
 } swarf_contour_options;
 
