@@ -254,7 +254,8 @@ class _Maker:
             faces.append(Face(self.shape(region), self.regions.outwards[region], kept_loops))
             shells.setdefault(self.regions.shell[region], []).append(region)
         keys = sorted(shells)
-        solids = pieces([self.regions.closed(key) for key in keys])
+        meshes = [self.regions.shell_mesh(key) for key in keys]
+        solids = pieces([mesh.measure() for mesh in meshes], meshes.__getitem__)
         if sum(map(len, solids)) != len(keys):
             raise self.fail("hollow")
         made = Brep(corners, edges, faces, [shells[key] for key in keys], solids, self.left)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Optional, Protocol, Sequence
+from typing import Any, Callable, Optional, Protocol, Sequence
 
-from ._native import Mesh, Surface
+from ._native import GeometryError, Mesh, Solid, Surface
 from .records import rows
-from .shapes import Vector, add, cross
+from .shapes import Vector, add, cross, middle
 
 #: What a plane in words looks like.
 PLANE_HELP = "x=MM, y=MM, z=MM, or X,Y,Z,NX,NY,NZ: a point and the normal"
@@ -24,29 +24,54 @@ class Closed(Protocol):
         """Two corners."""
 
 
-def contains(outer: Closed, inner: Closed) -> bool:
-    """Whether a shell's box lies in another's."""
+def _box_contains(outer: Closed, inner: Closed) -> bool:
     if outer.bounding_box is None or inner.bounding_box is None:
         return False
     (outer_lo, outer_hi), (inner_lo, inner_hi) = outer.bounding_box, inner.bounding_box
     return all(a <= b for a, b in zip(outer_lo, inner_lo)) and all(a >= b for a, b in zip(outer_hi, inner_hi))
 
 
-def pieces(shells: Sequence[Closed]) -> list[list[int]]:
-    """Places of the shells of each piece, the largest piece first; a cavity belongs to the smallest solid round it."""
+def _place_on(mesh: Mesh) -> Vector:
+    """The middle of a mesh's largest triangle: away from edges, along which it may touch others."""
+    vertices: list[Vector] = [(x, y, z) for x, y, z in rows(mesh.vertices)]
+    corners = ((vertices[a], vertices[b], vertices[c]) for a, b, c in rows(mesh.triangles))
+    return middle(*max(corners, key=lambda one: math.hypot(*cross(add(one[1], one[0], -1), add(one[2], one[0], -1)))))
+
+
+def pieces(shells: Sequence[Closed], mesh_of: Callable[[int], Mesh]) -> list[list[int]]:
+    """Places of the shells of each piece, the largest piece first; a hollow belongs to the innermost solid round it.
+    ``mesh_of``: a shell by its place, asked of hollows and what may be round them."""
     solids = sorted((i for i, shell in enumerate(shells) if shell.volume_mm3 > 0), key=lambda i: -shells[i].volume_mm3)
     found = {i: [i] for i in solids}
+    known: dict[int, Optional[Solid]] = {}
+
+    def is_round(solid: int, place: Vector) -> bool:
+        if solid not in known:
+            try:
+                known[solid] = Solid(mesh_of(solid))
+            except GeometryError:  # open: its box has to do
+                known[solid] = None
+        told = known[solid]
+        return told is None or told.distance([place])[0] < 0
+
     for i, shell in enumerate(shells):
-        if shell.volume_mm3 <= 0:
-            round_it = [s for s in solids if contains(shells[s], shell)]
-            if round_it:
-                found[round_it[-1]].append(i)
+        round_it = [s for s in solids if _box_contains(shells[s], shell)] if shell.volume_mm3 <= 0 else []
+        if round_it:
+            place = _place_on(mesh_of(i))
+            innermost = next((s for s in reversed(round_it) if is_round(s, place)), None)
+            if innermost is not None:
+                found[innermost].append(i)
     return [found[i] for i in solids]
+
+
+def pieces_of(mesh: Mesh) -> list[list[int]]:
+    """Places in mesh.shells() of the shells of each piece, as pieces()."""
+    return pieces(mesh.shells(), lambda shell: mesh.keep_shells([shell]))
 
 
 def largest(mesh: Mesh) -> Mesh:
     """The largest piece of a mesh alone; the mesh itself where it is one."""
-    found = pieces(mesh.shells())
+    found = pieces_of(mesh)
     return mesh if len(found) < 2 else mesh.keep_shells(found[0])
 
 
@@ -76,8 +101,8 @@ def thinnest(mesh: Mesh) -> dict[str, Any]:
     if not math.isfinite(least):
         return {"least_mm": None, "place": None}
     (corners,) = rows(mesh.triangles[where:where + 1])
-    points = [rows(mesh.vertices[corner:corner + 1])[0] for corner in corners]
-    return {"least_mm": least, "place": [sum(point[k] for point in points) / 3 for k in range(3)]}
+    a, b, c = ((x, y, z) for corner in corners for x, y, z in rows(mesh.vertices[corner:corner + 1]))
+    return {"least_mm": least, "place": list(middle(a, b, c))}
 
 
 #: Kinds of faces that CAD programs know, as in the last column of Mesh.origins(); the first is all else.

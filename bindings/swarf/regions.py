@@ -11,7 +11,7 @@ from typing import Optional
 from ._native import Mesh, Surface
 from .progress import TURNS, Report, check, share
 from .records import rows as rows_of
-from .shapes import Shape, Vector, add, cross, dot
+from .shapes import Shape, Vector, add, cross, dot, middle
 from .wording import Said
 
 #: mm; shapes that differ by less are one: what the digits of a program leave open.
@@ -54,14 +54,6 @@ class Ticks:
 
 
 @dataclass
-class Closed:
-    """A piece of surface that closes a piece of space; its volume is below 0 where it is round a hollow."""
-
-    volume_mm3: float
-    bounding_box: tuple[Vector, Vector]
-
-
-@dataclass
 class Regions:
     """A mesh in parts; lists by region but for the first three."""
 
@@ -90,13 +82,11 @@ class Regions:
         self.outwards[:] = [self.outwards[region] for region in kept]
         self.shell[:] = [self.shell[region] for region in kept]
 
-    def closed(self, shell: int) -> Closed:
-        """Volume and bounding box of a piece of surface."""
+    def shell_mesh(self, shell: int) -> Mesh:
+        """A piece of surface alone."""
         used = [triangle for triangle, region in zip(self.triangles, self.region_of) if self.shell[region] == shell]
-        first = self.vertices[used[0][0]]
-        volume = sum(dot(add(self.vertices[a], first, -1), _area(self.vertices, [a, b, c])) for a, b, c in used) / 6
-        xs, ys, zs = zip(*(self.vertices[corner] for triangle in used for corner in triangle))
-        return Closed(volume, ((min(xs), min(ys), min(zs)), (max(xs), max(ys), max(zs))))
+        number = {vertex: k for k, vertex in enumerate(sorted({corner for triangle in used for corner in triangle}))}
+        return Mesh([self.vertices[vertex] for vertex in number], [[number[v] for v in triangle] for triangle in used])
 
     def borders(self) -> dict[tuple[int, int], tuple[int, int]]:
         """Half-edges between regions: (the region on the left, that on the right)."""
@@ -336,14 +326,13 @@ def find(mesh: Mesh, surface: Surface, voxel: float, moves: Optional[int] = None
             lost += area
             at = max(triangles, key=lambda triangle: parts.area[triangle])
             a, b, c = (parts.vertices[corner] for corner in parts.triangles[at])
-            unknown.append(((a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3))
+            unknown.append(middle(a, b, c))
             continue
         way = 0.0
         for triangle in triangles:
             ticks.tick()
             a, b, c = (parts.vertices[corner] for corner in parts.triangles[triangle])
-            middle = ((a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3)
-            way += dot(shape.see(middle)[1], _area(parts.vertices, parts.triangles[triangle]))
+            way += dot(shape.see(middle(a, b, c))[1], _area(parts.vertices, parts.triangles[triangle]))
         shapes.append(shape)
         outwards.append(way > 0)
     if unknown:

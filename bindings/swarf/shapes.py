@@ -35,6 +35,11 @@ def cross(a: Vector, b: Vector) -> Vector:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
+def middle(a: Vector, b: Vector, c: Vector) -> Vector:
+    """Of a triangle."""
+    return (a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3
+
+
 def distance(a: Vector, b: Vector) -> float:
     """Of two points."""
     return math.dist(a, b)

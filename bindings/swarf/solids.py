@@ -9,7 +9,7 @@ from typing import Optional
 from . import brep, step
 from ._native import Mesh, Stock, Surface
 from .chains import SLOPPY
-from .parts import largest, pieces
+from .parts import largest, pieces_of
 from .progress import Report, check, share
 from .records import rows
 from .shapes import PLANE, Shape, add, cross, unit
@@ -59,15 +59,14 @@ def facets(mesh: Mesh, progress: Report = None) -> brep.Brep:
         raise ValueError(f"{mesh.triangle_count} triangles are too many for facets, of which {FACETS_MAX} are written "
                          "at most")
     made = brep.Brep([], [], [], [], [], 0.0)
-    shells = mesh.shells()
-    solids = pieces(shells)
-    if sum(map(len, solids)) != len(shells):
+    solids, count = pieces_of(mesh), len(mesh.shells())
+    if sum(map(len, solids)) != count:
         raise ValueError(Said("hollow"))
     for solid in solids:
         made.solids.append([])
         for shell in solid:
             made.solids[-1].append(len(made.shells))
-            _add(made, mesh.keep_shells([shell]) if len(shells) > 1 else mesh)
+            _add(made, mesh.keep_shells([shell]) if count > 1 else mesh)
             check(progress, len(made.faces) / mesh.triangle_count)
     return made
 

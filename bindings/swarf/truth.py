@@ -9,7 +9,7 @@ from typing import Optional
 from ._native import Surface
 from .progress import Report, share, told
 from .regions import Regions
-from .shapes import Vector, add, cross, unit
+from .shapes import Vector, add, cross, middle, unit
 from .strips import ask
 from .topology import Brep
 
@@ -32,9 +32,9 @@ def measure(made: Brep, regions: Regions, surface: Surface, voxel: float, moves:
         corners = regions.triangles[triangle]
         if borders.isdisjoint(corners):
             a, b, c = (regions.vertices[corner] for corner in corners)
-            middle = ((a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3)
-            value, gradient = regions.shape[regions.region_of[triangle]].see(middle)
-            place = add(middle, gradient, -value)
+            inside = middle(a, b, c)
+            value, gradient = regions.shape[regions.region_of[triangle]].see(inside)
+            place = add(inside, gradient, -value)
             found.append((abs(shape.see(place)[0]), place))
     return max(found, default=(0.0, (0.0, 0.0, 0.0)))
 

@@ -16,8 +16,8 @@ VOXEL = 0.4
 BLOCK = {"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)}
 
 
-def cut(tool, *moves, stock=None, voxel=VOXEL):
-    """(mesh, surface) of a block after moves: places, and arcs (end, centre)."""
+def job_of(tool, *moves, stock=None):
+    """Moves in a block: places, and arcs (end, centre)."""
     program = swarf.Program(start=moves[0])
     program.add_operation("cut")
     program.set_section(tool=1)
@@ -26,8 +26,12 @@ def cut(tool, *moves, stock=None, voxel=VOXEL):
             program.add_arc(move[0], move[1], ccw=True, feed_mm_min=100)
         else:
             program.add_line(move, feed_mm_min=100)
-    job = Job(name="cut", program=program, tools={1: swarf.Cutter(tool)}, stock=stock or BLOCK)
-    made = swarf.simulate(job, voxel=voxel, compare=False)
+    return Job(name="cut", program=program, tools={1: swarf.Cutter(tool)}, stock=stock or BLOCK)
+
+
+def cut(tool, *moves, stock=None, voxel=VOXEL):
+    """(mesh, surface) of a block after moves, as job_of()."""
+    made = swarf.simulate(job_of(tool, *moves, stock=stock), voxel=voxel, compare=False)
     return swarf.Mesh.from_stock(made.stock, solids.ERROR_VOXELS * voxel, surface=made.surface), made.surface
 
 
@@ -244,6 +248,22 @@ def test_a_hollow_is_in_its_solid(tmp_path):
     assert len(re.findall(r"=ORIENTED_CLOSED_SHELL\('',\*,#\d+,\.T\.\)", text)) == 1  # outwards is into the hollow
     with pytest.raises(brep.NotAnalytic, match="in no solid"):
         brep.make(mesh.keep_shells([1]), surface, VOXEL)
+
+
+def test_a_hollow_is_in_what_is_round_it():
+    """A block with a hollow, in the notch of an L that has less volume and a box round both."""
+    hollow = job_of("flat:d=6,l=1", (10, 8, -6), (16, 8, -6))
+    grooves = [place for y in (26, 30, 34, 38, 42) for place in ((-8, y, 5), (-8, y, -9.2), (53, y, -9.2), (53, y, 5))]
+    grooves += [place for x in (36, 40, 44, 48, 52)
+                for place in ((x, -8, 5), (x, -8, -9.2), (x, 48, -9.2), (x, 48, 5))]
+    mesh, surface = cut("flat:d=6,l=20", (30, -10, 5), (30, -10, -12), (30, 20, -12), (-10, 20, -12), (-10, 20, 5),
+                        *grooves, stock={"kind": "result", "job": hollow}, voxel=0.5)
+    made = brep.make(mesh, surface, 0.5)
+    owner, = (solid for solid in made.solids if len(solid) == 2)
+    corners = [{made.edges[edge].start for number in made.shells[shell] for loop in made.faces[number].loops
+                for edge, _ in loop} for shell in owner]
+    boxes = [[max(made.corners[corner][axis] for corner in shell) for axis in range(3)] for shell in corners]
+    assert len(made.solids) == 2 and boxes[0] == pytest.approx((27, 17, 0)) and boxes[1][2] == pytest.approx(-5)
 
 
 def test_an_empty_mesh_has_no_regions():

@@ -10,7 +10,7 @@ import pytest
 
 import swarf
 from conftest import GCODE
-from swarf import brep, regions, solids, strips
+from swarf import brep, parts, regions, solids, strips
 from swarf.cli import main
 from swarf.shapes import add, cross, dot
 
@@ -52,6 +52,30 @@ def test_two_solids_and_what_is_none():
         solids.facets(hollow.keep_shells([1]))
     with pytest.raises(ValueError, match="closed"):
         solids.facets(swarf.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
+
+
+def test_a_hollow_goes_with_what_is_round_it(tmp_path):
+    """A box with a hollow, in the notch of an L that has less volume and a bounding box round both."""
+    outline = ((0, 0), (10, 0), (10, 1), (1, 1), (1, 10), (0, 10))
+    caps = ((0, 1, 2), (0, 2, 3), (0, 3, 5), (3, 4, 5))
+    vertices = [(x, y, z) for z in (0, 10) for x, y in outline]
+    triangles = [tuple(k + 6 for k in one) for one in caps] + [one[::-1] for one in caps]
+    for k in range(6):
+        after = (k + 1) % 6
+        triangles += [(k, after, after + 6), (k, after + 6, k + 6)]
+    corners, others = join((2, 2, 1), (9, 9, 9), (3, 3, 3), (5, 5, 5), turned=True)
+    both = swarf.Mesh(vertices + corners, triangles + [tuple(k + 12 for k in one) for one in others])
+    assert both.volume == pytest.approx(190 + 392 - 8)
+    made = solids.facets(both)
+    assert sorted(map(len, made.solids)) == [1, 2] and len(made.shells) == 3
+    (owner,) = (solid for solid in made.solids if len(solid) == 2)
+    assert max(made.corners[made.edges[edge].start][0] for number in made.shells[owner[0]]
+               for edge, _ in made.faces[number].loops[0]) == 9
+    assert parts.largest(both).volume == pytest.approx(392 - 8)
+    both.write(tmp_path / "both.ply")
+    assert main(["mesh", str(tmp_path / "both.ply"), "--split", "--output", str(tmp_path / "part.ply")]) == 0
+    volumes = [swarf.Mesh.read(tmp_path / f"part-{number}.ply").volume for number in (1, 2)]
+    assert volumes == pytest.approx([392 - 8, 190])
 
 
 def join(*corners, turned=False):

@@ -11,7 +11,7 @@ from typing import Any, Optional
 
 from .. import _native, colours, solids
 from ..console import DONE, FINDINGS, check_outputs, say
-from ..parts import PLANE_HELP, parse_plane, pieces, thinnest
+from ..parts import PLANE_HELP, parse_plane, pieces_of, thinnest
 from ..progress import Bar
 from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES, check_coloured, streams
 from ..wording import unseen_note
@@ -63,7 +63,7 @@ def measures(mesh: _native.Mesh, thickness: bool) -> dict[str, Any]:
     found = {
         "whole": describe(mesh.measure()),
         "shells": [describe(shell) for shell in shells],
-        "pieces": len(pieces(shells)),
+        "pieces": sum(shell.volume_mm3 > 0 for shell in shells),
         "contour": None if made is None else describe(made),
     }
     return {**found, "thickness": thinnest(mesh)} if thickness else found
@@ -75,7 +75,7 @@ def parts_of(mesh: _native.Mesh, arguments: argparse.Namespace) -> list[_native.
     for point, normal in arguments.split_at:
         parts = [side for part in parts for side in part.split(point, normal) if side.triangle_count]
     if arguments.split:
-        parts = [part.keep_shells(piece) for part in parts for piece in pieces(part.shells())]
+        parts = [part.keep_shells(piece) for part in parts for piece in pieces_of(part)]
     return parts
 
 

@@ -129,9 +129,11 @@ def to_fixtures(data, progress=None):
     return result
 
 
-def pieces(shells):
-    """Places of the shells (with volume_mm3 and bounding_box) of each solid piece, its cavities behind it."""
-    return _package("parts").pieces(shells)
+def pieces(shells, triangles_of):
+    """Places of the shells (with volume_mm3 and bounding_box) of each solid piece, its cavities behind it;
+    triangles_of(place): vertices and triangles of a shell."""
+    mesh = load().Mesh
+    return _package("parts").pieces(shells, lambda place: mesh(*triangles_of(place)))
 
 
 def to_program(table):

@@ -210,6 +210,11 @@ def _measures(shell):
     return _Measures(shell.Volume, ((box.XMin, box.YMin, box.ZMin), (box.XMax, box.YMax, box.ZMax)))
 
 
+def _triangles(shell):
+    points, facets = shell.tessellate(1.0)  # of flat faces: exact
+    return [tuple(point) for point in points], facets
+
+
 def shape_of(mesh):
     """Solid of a closed mesh, flat pieces as one face, cavities left hollow; a compound where there are several.
     JobError for more triangles than that is good for."""
@@ -219,7 +224,8 @@ def shape_of(mesh):
     shape = Part.Shape()
     shape.makeShapeFromMesh(mesh.Topology, 1e-4)
     shells = shape.Shells
-    pieces = native.pieces([_measures(shell) for shell in shells])  # a cavity's volume is negative
+    pieces = native.pieces([_measures(shell) for shell in shells],  # a cavity's volume is negative
+                           lambda place: _triangles(shells[place]))
     if not pieces or not all(shell.isClosed() for shell in shells):
         raise JobError("the mesh does not close to a solid")
     solids = [Part.makeSolid(Part.makeCompound([shells[place] for place in piece])).removeSplitter()
