@@ -270,6 +270,21 @@ static void touch_arc(const swarf_trace *trace, const double p[3], swarf_touch *
 
 /* ---- tilted lines of cylinders and balls ------------------------------------------------------------------------- */
 
+/* A plane that touches the slanted surface of a disc on a tilted line: that whose normal is the similar ellipse's
+ * through a point at `w` across the line, `away` from the plane of the disc's middles. Its value there and its unit
+ * normal across the line and away from it. Beside the wall, where the plane above a point is steep, it is the nearer to
+ * the truth (see sweep/kernel_line.h). -INFINITY: the point is not beyond the disc. */
+static double rim_plane(double w, double away, double R, double tilt, double normal[2])
+{
+    const double half_axis = R * tilt;
+    if (away <= 0 || half_axis < 1e-9 * R) return -INFINITY;
+    const double u = w / R, v = away / half_axis, size = sqrt(u * u + v * v);
+    const double length = sqrt(u * u * tilt * tilt + v * v);
+    normal[0] = u * tilt / length;
+    normal[1] = v / length;
+    return size * (size - 1) * half_axis / length;
+}
+
 /* A cylinder from `bottom` to `top` above the tip; its lower face has the piece number `piece`. With a `most` only its
  * value, and not even that where it is as far. */
 static void touch_cylinder(const swarf_trace *trace, const double p[3], double R, double bottom, double top,
@@ -314,6 +329,18 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
         gz = chord / norm;
         at = clamp(s + chord, 0, trace->run);
         touched = piece + 2;
+    }
+    for (int up = 0; up < 2; up++) {
+        double n[2] = {0, 0};
+        const double away = (up ? z - top - s * m : s * m + bottom - z) * im, rim = rim_plane(w, away, R, m * im, n);
+        if (rim <= value) continue;
+        const double sense = up ? -1 : 1, foot = w - rim * n[0];
+        value = rim;
+        gs = sense * m * im * n[1];
+        gw = n[0];
+        gz = -sense * im * n[1];
+        at = clamp(s - rim * gs - sense * sqrt(most_of(0, R * R - foot * foot)), 0, trace->run);
+        touched = up ? piece + 2 : piece;
     }
     const double gradient[3] = {gs * trace->ux - gw * trace->uy, gs * trace->uy + gw * trace->ux, gz};
     const double t = trace->t0 + (trace->t1 - trace->t0) * at / trace->run;

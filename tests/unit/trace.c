@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Traces: a look at one with a limit tells what a full touch does, bit for bit, of all that is nearer than the limit,
- * and of nothing else that it is nearer; and tangents never promise more than there is. All cutters and motions. */
+ * and of nothing else that it is nearer; and tangents never promise more than there is. All cutters and motions. Beside
+ * ramps of flat ends the value is never far below the distance. */
 #include "surface/trace.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cases.h"
@@ -60,6 +62,42 @@ static void check_bounds(const swarf_trace *trace, const double point[3], const 
     CHECK(there.value >= 0 || there.raw <= 0);
 }
 
+/* Outside of what a flat end ramps through, which is convex, values are bounds by planes that touch it: none above the
+ * distance, and as the best are nearly square to the way there, none below 0.45 of it, beside the rim's wall either. */
+static void check_ramps(test_random *random)
+{
+    const char *name;
+    swarf_cutter *flat = case_cutter(0, &name);
+    const oracle_body shape = oracle_body_of(flat, SWARF_PART_FLUTES);
+    const int ramps = test_size() == TEST_LIGHT ? 3 : 12;
+    int outside = 0;
+    double least = INFINITY;
+    swarf_body *body = NULL;
+    if (!CHECK_OK(swarf_body_create(flat, SWARF_PART_FLUTES, voxel, &body))) exit(test_end());
+    for (int ramp = 0; ramp < ramps; ramp++) {
+        const double slope = exp(test_random_in(random, log(0.02), log(3)));
+        const swarf_path path = oracle_line(0, 0, 0, 10, 0, 10 * slope);
+        swarf_trace trace;
+        swarf_trace_make(body, &path, 7, 0, 1, &trace);
+        for (int i = 0; i < 500; i++) {
+            const double s = test_random_in(random, 3, 7), depth = test_random_in(random, -0.1, 2.1 * slope + 0.4);
+            const double w = shape.radius + 0.1 - pow(test_random_in(random, 0, 1), 3);
+            const double point[3] = {s, i & 1 ? w : -w, s * slope - depth};
+            const double distance = oracle_distance(&shape, &path, point);
+            if (distance < 1e-3 * voxel) continue;
+            swarf_touch touch;
+            swarf_trace_touch(&trace, point, &touch);
+            CHECK(touch.value < distance + 1e-6);
+            least = fmin(least, touch.value / distance);
+            outside++;
+        }
+    }
+    printf("ramps of flat ends: values from %.2f of the distance, at %d points\n", least, outside);
+    CHECK(least > 0.45 && outside > 100);
+    swarf_body_destroy(body);
+    swarf_cutter_release(flat);
+}
+
 int main(void)
 {
     test_random random = test_random_begin(61);
@@ -92,6 +130,7 @@ int main(void)
         swarf_body_destroy(body);
         swarf_cutter_release(cutter);
     }
+    check_ramps(&random);
     CHECK(counts[0] > 1000 && counts[1] > 1000 && bounded > 100);
     return test_end();
 }
