@@ -46,6 +46,12 @@ MOST_POINTS = 200
 #: Halves of a piece of a curve are shorter than it, by this at least; else it turns back.
 HALF = 0.75
 
+#: In voxels: points of a curve are farther apart than this.
+SHORT = 1e-3
+
+#: Cosine of the angle between a curve and the chord of one of its pieces, at least; else it is folded.
+FOLD = 0.5
+
 #: Sine of the angle between faces below which their normals do not tell where their edge goes.
 TANGENT = 1e-4
 
@@ -80,12 +86,18 @@ class _Maker:
         return found
 
     def touch(self, chain: Chain) -> Equations:
-        return chains.touch(self.regions, chain.left, chain.right)
+        return chains.touch(self.regions, chain.left, chain.right, chain.blade)
 
     def tell_touching(self, chain: Chain) -> None:
-        """Whether the faces beside a chain go on smoothly into each other."""
-        place = chains.middle(self.regions, chain)
-        chain.touching = chains.contact(self.regions, chain.left, chain.right, place, 3 * self.voxel) is not None
+        """Whether the faces beside a chain go on smoothly into each other, or touch as the two of a blade do."""
+        place, near = chains.middle(self.regions, chain), 3 * self.voxel
+        chain.touching = chains.contact(self.regions, chain.left, chain.right, place, near) is not None
+        met = None if chain.touching else meet(self.equations((chain.left, chain.right)), place)
+        if met is not None and self.is_tangent(chain, met[0]):
+            first, second = (self.regions.outside(region, met[0]) for region in (chain.left, chain.right))
+            chain.blade = dot(first, second) < 0
+            found = meet(self.equations((chain.left, chain.right)) + [self.touch(chain)], met[0])
+            chain.touching = found is not None and found[1] < SLOPPY and distance(found[0], met[0]) < near
 
     def solve(self, equations: Sequence[Equations], start: Vector, lost: str) -> Vector:
         check(self.progress, self.done)
@@ -199,30 +211,56 @@ class _Maker:
         if chain.touching:
             raise self.fail("curve touched")
         equations = self.contact(chain)
+        points = self.apart(chain, points)
         directions = [self.direction(chain, point, add(points[min(k + 1, len(points) - 1)], points[max(k - 1, 0)], -1))
                       for k, point in enumerate(points)]
+        tips = [(tip, beside) for tip, beside in ((0, 1), (-1, -2)) if self.is_tangent(chain, points[tip])]
+        if len(tips) == len(points):
+            raise self.fail("curve rough", x=points[0][0], y=points[0][1], z=points[0][2])
         k = 0
         while k + 1 < len(points):
+            for tip, beside in tips:
+                directions[tip] = _mirrored(directions[beside], add(points[beside], points[tip], -1))
             length = distance(points[k], points[k + 1])
             middle = add(add(points[k], add(points[k + 1], points[k], -1), 0.5),
                          add(directions[k], directions[k + 1], -1), length / 8)
             true = self.solve(equations, middle, "edge lost")
-            if distance(true, middle) < CURVE or length < 1e-3 * self.voxel:
+            if distance(true, middle) < CURVE:
                 k += 1
                 continue
             longer = max(distance(points[k], true), distance(true, points[k + 1]))
-            if longer > HALF * length or len(points) >= MOST_POINTS:
+            if longer > HALF * length or length < SHORT * self.voxel or len(points) >= MOST_POINTS:
                 raise self.fail("curve rough", x=true[0], y=true[1], z=true[2])
             directions.insert(k + 1, self.direction(chain, true, add(points[k + 1], points[k], -1)))
             points.insert(k + 1, true)
+        for k, (a, b) in enumerate(zip(points, points[1:])):
+            way = unit(add(b, a, -1))
+            if min(dot(directions[k], way), dot(directions[k + 1], way)) < FOLD:
+                raise self.fail("curve rough", x=a[0], y=a[1], z=a[2])
         return Edge(start, end, points=points, directions=directions)
 
+    def apart(self, chain: Chain, points: list[Vector]) -> list[Vector]:
+        """Points without those that are as good as another, and those inside where the faces are tangent: there they
+        are not where the edge is but where its solution ended."""
+        kept = points[:1]
+        for point in points[1:-1]:
+            if (min(distance(point, kept[-1]), distance(point, points[-1])) > SHORT * self.voxel
+                    and not self.is_tangent(chain, point)):
+                kept.append(point)
+        return kept + points[-1:]
+
+    def along(self, chain: Chain, place: Vector) -> Vector:
+        """Where the edge goes at a place, this way or that; of no length where the faces are tangent."""
+        return cross(self.shape(chain.left).see(place)[1], self.shape(chain.right).see(place)[1])
+
+    def is_tangent(self, chain: Chain, place: Vector) -> bool:
+        """Whether the faces' normals do not tell where their edge goes."""
+        return math.hypot(*self.along(chain, place)) < TANGENT
+
     def direction(self, chain: Chain, place: Vector, way: Vector) -> Vector:
-        """Where the edge goes at a place, about along a way; that way itself where the faces are tangent."""
-        along = cross(self.shape(chain.left).see(place)[1], self.shape(chain.right).see(place)[1])
-        if math.hypot(*along) < TANGENT:
-            return unit(way)
-        return unit(along) if dot(along, way) > 0 else add((0.0, 0.0, 0.0), unit(along), -1)
+        """Where the edge goes at a place, about along a way."""
+        along = unit(self.along(chain, place))
+        return along if dot(along, way) > 0 else add((0.0, 0.0, 0.0), along, -1)
 
     def make(self, progress: Report) -> Brep:
         self.progress = progress
@@ -276,6 +314,12 @@ class _Maker:
                 used.update(loop)
         if len(used) != 2 * len(made.edges):
             raise self.fail("edge one side")
+
+
+def _mirrored(direction: Vector, chord: Vector) -> Vector:
+    """The direction at the other end of an arc of a circle."""
+    way = unit(chord)
+    return add(add((0.0, 0.0, 0.0), way, 2 * dot(direction, way)), direction, -1)
 
 
 def _forwards(points: list[Vector], end: Vector) -> list[Vector]:

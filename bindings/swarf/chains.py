@@ -21,13 +21,15 @@ FLAT, ALMOST = 40.0, 0.05
 
 @dataclass
 class Chain:
-    """Mesh vertices from corner to corner, the left region's half-edges going along."""
+    """Mesh vertices from corner to corner, the left region's half-edges going along. ``touching``: its faces have one
+    plane there, ``blade``: and opposite sides of it."""
 
     left: int
     right: int
     vertices: list[int]
     closed: bool
     touching: bool = False
+    blade: bool = False
 
 
 def find(regions: Regions) -> tuple[list[Chain], dict[tuple[int, int], tuple[int, bool]]]:
@@ -57,9 +59,9 @@ def find(regions: Regions) -> tuple[list[Chain], dict[tuple[int, int], tuple[int
     return chains, chain_of
 
 
-def touch(regions: Regions, a: int, b: int) -> Equations:
-    """That two regions go on smoothly into each other at a place."""
-    return tangency(regions.shape[a], regions.shape[b], regions.outwards[a] == regions.outwards[b])
+def touch(regions: Regions, a: int, b: int, blade: bool = False) -> Equations:
+    """That two regions go on smoothly into each other at a place; or back, as the two sides of a blade."""
+    return tangency(regions.shape[a], regions.shape[b], (regions.outwards[a] == regions.outwards[b]) != blade)
 
 
 def contact(regions: Regions, a: int, b: int, place: Vector, near: float) -> Optional[Equations]:

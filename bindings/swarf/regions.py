@@ -73,6 +73,11 @@ class Regions:
         """Whether two shapes are one, but for the digits of the program."""
         return one is not None and other is not None and one.is_same(other, SAME, self.directions)
 
+    def outside(self, region: int, place: Vector) -> Vector:
+        """Normal of a region out of the material, at a place on its shape."""
+        gradient = self.shape[region].see(place)[1]
+        return gradient if self.outwards[region] else add((0.0, 0.0, 0.0), gradient, -1)
+
     def compact(self) -> None:
         """Leave out regions without triangles."""
         kept = sorted(set(self.region_of))

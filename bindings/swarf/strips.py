@@ -55,11 +55,6 @@ class _Mender:
         self.regions, self.surface, self.voxel, self.moves = regions, surface, voxel, moves
         self.kept: set[tuple[int, ...]] = set()  # corners that were looked at: the vertex and the regions about it
 
-    def outside(self, region: int, place: Vector) -> Vector:
-        """Normal of a region out of the material."""
-        gradient = self.regions.shape[region].see(place)[1]
-        return gradient if self.regions.outwards[region] else add((0.0, 0.0, 0.0), gradient, -1)
-
     def place(self, beside: Sequence[int], vertex: int) -> Optional[Vector]:
         """Where regions meet near a vertex, and touch where they touch there."""
         start = self.regions.vertices[vertex]
@@ -81,7 +76,7 @@ class _Mender:
         count = round(REACH / STEP)
         found = []
         for step in range(-count, count + 1):
-            normal = self.outside(chain.left if step < 0 else chain.right, place)
+            normal = self.regions.outside(chain.left if step < 0 else chain.right, place)
             found.append((add(place, unit(cross(normal, way)), -step * STEP * self.voxel), normal))
         return found
 
@@ -125,7 +120,7 @@ class _Mender:
             opening.join(regions, known)
             return known[0]
         place = chains.middle(regions, chain)
-        normal = add(self.outside(chain.left, place), self.outside(chain.right, place))
+        normal = add(regions.outside(chain.left, place), regions.outside(chain.right, place))
         regions.shape.append(shape)
         regions.outwards.append(dot(shape.see(place)[1], normal) > 0)
         regions.shell.append(regions.shell[chain.left])
