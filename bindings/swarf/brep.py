@@ -15,7 +15,7 @@ import math
 from itertools import product
 from typing import Iterator, Optional, Sequence
 
-from . import chains, strips, truth
+from . import chains, strips, truth, volume
 from ._native import Mesh, Surface
 from .chains import SLOPPY, Chain
 from .parts import pieces
@@ -51,6 +51,11 @@ SHORT = 1e-3
 
 #: Cosine of the angle between a curve and the chord of one of its pieces, at least; else it is folded.
 FOLD = 0.5
+
+#: In voxels: what the mesh of a solid may be off. Few triangles where it is flat, and edges that wander little: facets
+#: of a cylinder of 12 voxels' radius are a voxel wide then; wider ones bridge the narrow faces in which a path of many
+#: short lines bends.
+MESH_ERROR = 0.01
 
 #: Sine of the angle between faces below which their normals do not tell where their edge goes.
 TANGENT = 1e-4
@@ -196,14 +201,14 @@ class _Maker:
         if start != end and self.shape(chain.left).kind == self.shape(chain.right).kind == PLANE:
             return Edge(start, end)  # however flatly they cross: between, it would be less exact
         points = self.samples(chain, corners[start], corners[end])
-        close = CLOSE + 2 * self.left
-        if start != end and _is_line(points, close):
-            return Edge(start, end)
-        circle = _circle(self.shape(chain.left), self.shape(chain.right), points, close)
-        if circle is not None:
-            centre, axis, radius = circle
-            turn = sum(dot(cross(add(a, centre, -1), add(b, centre, -1)), axis) for a, b in zip(points, points[1:]))
-            return Edge(start, end, centre, axis if turn > 0 else (-axis[0], -axis[1], -axis[2]), radius)
+        for close in (CLOSE, CLOSE + 2 * self.left):  # a short arc may be as good as a line where corners are inexact
+            if start != end and _is_line(points, close):
+                return Edge(start, end)
+            circle = _circle(self.shape(chain.left), self.shape(chain.right), points, close)
+            if circle is not None:
+                centre, axis, radius = circle
+                turn = sum(dot(cross(add(a, centre, -1), add(b, centre, -1)), axis) for a, b in zip(points, points[1:]))
+                return Edge(start, end, centre, axis if turn > 0 else (-axis[0], -axis[1], -axis[2]), radius)
         return self.curve(chain, start, end, points)
 
     def curve(self, chain: Chain, start: int, end: int, points: list[Vector]) -> Edge:
@@ -369,8 +374,8 @@ def _circle(a: Shape, b: Shape, points: list[Vector], close: float) -> Optional[
 
 def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = None, progress: Report = None) -> Brep:
     """The solid of a closed mesh on a Surface, made of voxels this large (mm), with little left out of it
-    (Mesh.from_stock(error=voxel / 100)). NotAnalytic where it is not bounded by planes, cylinders, cones, spheres and
-    tori alone, or of too many faces; ValueError for a mesh that is empty or open."""
+    (Mesh.from_stock(error=MESH_ERROR * voxel)). NotAnalytic where it is not bounded by planes, cylinders, cones,
+    spheres and tori alone, of too many faces, or comes out wrong; ValueError for a mesh that is empty or open."""
     if not mesh.triangle_count or not mesh.closed:
         raise ValueError(Said("no mesh"))
     regions = find(mesh, surface, voxel, moves, share(progress, 0, 0.5))
@@ -387,4 +392,7 @@ def make(mesh: Mesh, surface: Surface, voxel: float, *, moves: Optional[int] = N
     if made.off_mm > NEAR * voxel:
         x, y, z = made.off_at
         raise NotAnalytic(Said("solid off", off=made.off_mm, x=x, y=y, z=z), regions.known_share)
+    off = abs(volume.of(made) - mesh.volume)
+    if off > MESH_ERROR * voxel * mesh.area:
+        raise NotAnalytic(Said("volume off", off=off), regions.known_share)
     return made

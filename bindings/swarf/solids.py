@@ -19,11 +19,6 @@ __all__ = ["SUFFIXES", "Written", "facets", "missing", "write", "write_facets"]
 
 SUFFIXES = (".step", ".stp")
 
-#: A solid is made of a mesh with an error of so many voxels: few triangles where it is flat, and edges that wander
-#: little. Facets of a cylinder of 12 voxels' radius are a voxel wide then; wider ones bridge the narrow faces in which
-#: a path of many short lines bends.
-ERROR_VOXELS = 0.01
-
 #: Triangles whose faces are told in a minute or so.
 TRIANGLES_MAX = 500000
 
@@ -129,7 +124,7 @@ def write(stock: Stock, surface: Surface, path: str, *, error: float, only_large
     """A STEP file of what is left of a stock after all moves of its Surface; of facets, with this error (mm), where it
     is not bounded by planes, cylinders, cones, spheres and tori alone. ValueError where it is too much even for facets,
     or nothing is left; OSError."""
-    mesh = Mesh.from_stock(stock, ERROR_VOXELS * stock.voxel, surface=surface, progress=share(progress, 0, 0.4))
+    mesh = Mesh.from_stock(stock, brep.MESH_ERROR * stock.voxel, surface=surface, progress=share(progress, 0, 0.4))
     mesh = largest(mesh) if only_largest else mesh
     try:
         if mesh.triangle_count > TRIANGLES_MAX:

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import swarf
-from swarf import brep, regions, shapes, solids, step
+from swarf import brep, regions, shapes, step, volume
 from swarf.job import Job
 from swarf.shapes import CONE, CYLINDER, PLANE, SPHERE, TORUS, Shape, add, dot
 
@@ -32,7 +32,7 @@ def job_of(tool, *moves, stock=None):
 def cut(tool, *moves, stock=None, voxel=VOXEL):
     """(mesh, surface) of a block after moves, as job_of()."""
     made = swarf.simulate(job_of(tool, *moves, stock=stock), voxel=voxel, compare=False)
-    return swarf.Mesh.from_stock(made.stock, solids.ERROR_VOXELS * voxel, surface=made.surface), made.surface
+    return swarf.Mesh.from_stock(made.stock, brep.MESH_ERROR * voxel, surface=made.surface), made.surface
 
 
 @pytest.mark.parametrize("shape", [
@@ -110,6 +110,72 @@ def test_solids(tool, moves, faces, edges, tmp_path):
     names = set(re.findall(r"^(#\d+)=", text, re.M))
     assert set(re.findall(r"#\d+", text)) == names  # all that is named is there
     assert list(tmp_path.iterdir()) == [tmp_path / "part.step"]
+
+
+@pytest.mark.parametrize("tool, moves, removed", [
+    ("flat:d=6,l=20", ((30, 20, 5), (30, 20, -12)), 90 * math.pi),
+    ("drill:d=6,l=20,a=90", ((30, 20, 5), (30, 20, -7)), 36 * math.pi + 9 * math.pi),
+    ("ball:d=6,l=20", ((30, 20, 5), (30, 20, -5)), 18 * math.pi + 18 * math.pi),
+    ("ball:d=6,l=20", ((10, 20, 5), (10, 20, -5), (50, 20, -5)), 36 * math.pi + 40 * (12 + 4.5 * math.pi)),
+    ("bull:d=8,r=1,l=20", ((30, 20, 5), (30, 20, -4)), math.pi * (48 + 9 + 6 * math.pi / 4 + 2 / 3)),
+    ("flat:d=6,l=2", ((20, 20, -6), (40, 20, -6)), 2 * (9 * math.pi + 120)),  # a hollow
+])
+def test_volumes(tool, moves, removed):
+    mesh, surface = cut(tool, *moves)
+    assert volume.of(brep.make(mesh, surface, VOXEL)) == pytest.approx(24000 - removed, abs=1e-7)
+
+
+def test_a_face_may_hold_poles_of_its_sphere():
+    """Both, one and none of those about which angles are counted, far from its edge."""
+    ball = Shape(SPHERE, (1, 2, 3), (0, 0, 0), 2.0, 0)
+    for height in (-1.5, 0.2, 1.9):
+        radius = math.sqrt(4 - height ** 2)
+        edge = brep.Edge(0, 0, (1, 2, 3 + height), (0, 0, 1), radius)
+        faces = [brep.Face(ball, True, [[(0, True)]]),
+                 brep.Face(Shape(PLANE, (0, 0, 3 + height), (0, 0, 1), 0, 0), False, [[(0, False)]])]
+        cap = brep.Brep([(1 + radius, 2, 3 + height)], [edge], faces, [[0, 1]], [[0]], 0.0)
+        assert volume.of(cap) == pytest.approx(math.pi * (2 - height) ** 2 * (4 + height) / 3, rel=1e-8)
+
+
+def moved(made):
+    made.corners[0] = add(made.corners[0], (0, 0, 0.1))
+
+
+def other_arc(made):
+    arc = next(edge for edge in made.edges if edge.axis is not None and edge.start != edge.end)
+    arc.axis = tuple(-x for x in arc.axis)
+
+
+def inside_out(kind):
+    def change(made):
+        face = next(face for face in made.faces if face.shape.kind == kind)
+        face.outwards = not face.outwards
+    return change
+
+
+def of_another(made):
+    made.faces[-1].shape, made.faces[-2].shape = made.faces[-2].shape, made.faces[-1].shape
+
+
+def left_out(made):
+    made.faces.pop()
+
+
+@pytest.mark.parametrize("change", [
+    moved, other_arc, inside_out(PLANE), inside_out(CYLINDER), inside_out(SPHERE), of_another, left_out])
+def test_what_comes_out_wrong_is_refused(change, monkeypatch):
+    """A solid that is changed after it was made."""
+    make = brep._Maker.make
+
+    def make_wrong(self, progress):
+        made = make(self, progress)
+        change(made)
+        return made
+
+    monkeypatch.setattr(brep._Maker, "make", make_wrong)
+    mesh, surface = cut("ball:d=6,l=20", (10, 20, 5), (10, 20, -5), (50, 20, -5))
+    with pytest.raises(brep.NotAnalytic, match="off by"):
+        brep.make(mesh, surface, VOXEL)
 
 
 @pytest.mark.parametrize("voxel", [0.3, 0.37, 0.4, 0.47])
@@ -214,7 +280,7 @@ def test_curves_begin_where_faces_are_tangent(radius, voxel):
                         (15, 28, -5), (15, 12.5, -5), (15, 12.5, 5), voxel=voxel)
     made = brep.make(mesh, surface, voxel)
     curves = [edge for edge in made.edges if edge.points]
-    assert len(made.faces) == 34 and made.off_mm < 1e-12 and len(curves) == 5
+    assert len(made.faces) == 34 and made.off_mm < 1e-9 and len(curves) == 5
     for edge in curves:
         lengths = [math.dist(a, b) for a, b in zip(edge.points, edge.points[1:])]
         assert min(lengths) > 0.05 and max(bend(edge, k) for k in range(len(lengths))) < 0.1

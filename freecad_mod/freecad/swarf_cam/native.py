@@ -283,7 +283,7 @@ def export_analytic(data, stock_file, path, largest=False, progress=None):
     brep, step, solids, parts, shares = map(_package, ("brep", "step", "solids", "parts", "progress"))
     share = functools.partial(shares.share, progress)
     _, left, surface = _exact(data, stock_file, share(0, 0.4))
-    error = solids.ERROR_VOXELS * left.voxel
+    error = brep.MESH_ERROR * left.voxel
     mesh = swarf.Mesh.from_stock(left, error, surface=surface, progress=share(0.4, 0.7))
     if not mesh.triangle_count:
         raise JobError("nothing is left of the stock")
