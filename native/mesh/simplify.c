@@ -44,6 +44,7 @@ typedef struct job {
     uint32_t *shared;         /* facets that reach out of a cube */
     size_t *gone;             /* by cube */
     simplify_region *scratch; /* of each thread */
+    int scratch_count;
 } job;
 
 static uint32_t find_cube(const job *j, size_t vertex)
@@ -309,7 +310,7 @@ static swarf_status make_room(simplify_region *r, size_t facets)
 {
     r->vertex_count = r->facet_count = r->owned_count = 0;
     r->stamp = 0;
-    if (facets <= r->room) return SWARF_OK;
+    if (r->facet && facets <= r->room) return SWARF_OK;
     free_region(r);
     const size_t room = facets + facets / 4, vertices = 3 * room;
     r->xyz = malloc(3 * vertices * sizeof *r->xyz);
@@ -327,14 +328,11 @@ static swarf_status make_room(simplify_region *r, size_t facets)
     return SWARF_OK;
 }
 
-static swarf_status simplify_cube(void *context, size_t cube)
+static swarf_status simplify_facets(job *j, size_t cube, simplify_region *r)
 {
-    job *j = context;
     const size_t owned_first = cube ? j->owned_begin[cube - 1] : 0, owned = j->owned_begin[cube] - owned_first;
     const size_t shared_first = cube ? j->shared_begin[cube - 1] : 0, shared = j->shared_begin[cube] - shared_first;
-    j->gone[cube] = 0;
     if (owned < 4) return SWARF_OK; /* nothing to remove */
-    simplify_region *r = &j->scratch[swarf_parallel_slot()];
     SWARF_TRY(make_room(r, owned + shared));
     for (size_t i = 0; i < owned; i++) add_facet(j, r, cube, j->owned[owned_first + i], 0);
     r->owned_count = owned;
@@ -343,6 +341,17 @@ static swarf_status simplify_cube(void *context, size_t cube)
     j->gone[cube] = put_back(r, j->facets->facet);
     for (size_t i = 0; i < r->vertex_count; i++) j->settled[r->global[i]] = r->state[i] == 0;
     return SWARF_OK;
+}
+
+static swarf_status simplify_cube(void *context, size_t cube)
+{
+    job *j = context;
+    simplify_region own = {0};
+    /* the number of threads may have been raised since the scratch was made */
+    const int slot = swarf_parallel_slot();
+    const swarf_status status = simplify_facets(j, cube, slot < j->scratch_count ? &j->scratch[slot] : &own);
+    free_region(&own);
+    return status;
 }
 
 static void drop_gone(swarf_facets *facets)
@@ -442,8 +451,8 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
     j.cube = malloc(facets->vertex_count * sizeof *j.cube);
     j.local = calloc(facets->vertex_count, sizeof *j.local);
     j.settled = malloc(facets->vertex_count);
-    const int threads = swarf_threads();
-    j.scratch = calloc((size_t)threads, sizeof *j.scratch);
+    j.scratch_count = swarf_threads();
+    j.scratch = calloc((size_t)j.scratch_count, sizeof *j.scratch);
     swarf_status status = SWARF_OK;
     if (!j.cube || !j.local || !j.settled || !j.scratch)
         status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
@@ -467,7 +476,7 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
         }
         if (budget && facets->facet_count <= budget) break;
     }
-    for (int i = 0; j.scratch && i < threads; i++) free_region(&j.scratch[i]);
+    for (int i = 0; j.scratch && i < j.scratch_count; i++) free_region(&j.scratch[i]);
     free(j.scratch);
     free(j.cube);
     free(j.local);

@@ -51,11 +51,12 @@ INLINE int has_rim(lanes w2, float m, float im, float radius)
     return radius * m * im > least_rim && bits(less(all(inner * inner), w2));
 }
 
-/* The greater of a value and that plane's, where it can be and counts. */
+/* The greater of a value and that plane's, beyond the disc and within the band. */
 INLINE lanes with_rim(const struct slant *slant, lanes height, lanes value)
 {
-    if (!bits(both(less(all(0), height), less(value, all(SWARF_HALF_WIDTH))))) return value;
-    return maximum(value, rim_value(slant, height));
+    const mask beyond = both(less(all(0), height), less(value, all(SWARF_HALF_WIDTH)));
+    if (!bits(beyond)) return value;
+    return pick(beyond, maximum(value, rim_value(slant, height)), value);
 }
 
 static __attribute__((noinline)) void cylinder_rim(const struct slant *slant, lanes at, lanes side, float length,

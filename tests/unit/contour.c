@@ -181,6 +181,35 @@ static int stop(void *user, double fraction)
     return ++*(int *)user >= 3;
 }
 
+static int raise_threads(void *user, double fraction)
+{
+    (void)fraction;
+    return swarf_threads_set(++*(int *)user % 8 + 1) != SWARF_OK;
+}
+
+/* Threads may be set at any time, from a callback too: the mesh is the same. */
+static void check_threads(void)
+{
+    swarf_stock *stock = make_box((double[]){0, 0, 0}, (double[]){10.03, 9.07, 8.11}, 0.1);
+    swarf_contour_options options = swarf_contour_options_default();
+    options.error_mm = 0.01;
+    uint32_t triangles[2] = {0, 1};
+    int calls = 0;
+    const swarf_progress progress = {raise_threads, &calls};
+    CHECK_OK(swarf_progress_interval_set(0));
+    for (int k = 0; k < 2; k++) {
+        swarf_mesh *mesh = NULL;
+        CHECK_OK(swarf_threads_set(1));
+        if (!CHECK_OK(swarf_mesh_contour(stock, &options, k ? &progress : NULL, &mesh, NULL))) continue;
+        triangles[k] = (uint32_t)swarf_mesh_triangles(mesh).triangle_count;
+        swarf_mesh_release(mesh);
+    }
+    CHECK(triangles[0] == triangles[1] && calls > 20);
+    CHECK_OK(swarf_threads_set(0));
+    CHECK_OK(swarf_progress_interval_set(100));
+    swarf_stock_destroy(stock);
+}
+
 static void check_refusals(void)
 {
     const double lo[3] = {0, 0, 0}, hi[3] = {2, 2, 2};
@@ -247,5 +276,6 @@ int main(void)
     check_cylinder();
     check_refusals();
     check_small();
+    check_threads();
     return test_end();
 }
