@@ -29,12 +29,13 @@ FACETS_MAX = 100000
 @dataclass
 class Written:
     """A file that was written. ``reason``: why it is of facets, None where its faces are as they were cut; then they
-    are off by ``off_mm`` at most, and ``missing`` tells where that is more than the program's digits."""
+    are off by ``off_mm`` at most (None of facets), and ``missing`` tells where that is more than the program's
+    digits."""
 
     path: str
     faces: int
     reason: Optional[str] = None
-    off_mm: float = 0.0
+    off_mm: Optional[float] = None
     missing: Optional[Said] = None
 
     @property
@@ -106,7 +107,7 @@ def _written(made: brep.Brep, path: str, reason: Optional[str], progress: Report
     step.write(made, path, progress=progress)
     if progress is not None:
         progress(1.0)  # it is there: too late to cancel
-    return Written(path, len(made.faces), reason, made.off_mm, missing(made))
+    return Written(path, len(made.faces), reason, None if reason else made.off_mm, missing(made))
 
 
 def write_facets(mesh: Mesh, path: str, reason: str, progress: Report = None) -> Written:
@@ -125,6 +126,8 @@ def write(stock: Stock, surface: Surface, path: str, *, error: float, only_large
     is not bounded by planes, cylinders, cones, spheres and tori alone. ValueError where it is too much even for facets,
     or nothing is left; OSError."""
     mesh = Mesh.from_stock(stock, brep.MESH_ERROR * stock.voxel, surface=surface, progress=share(progress, 0, 0.4))
+    if not mesh.triangle_count:
+        raise ValueError(f"{path}: cannot be written: {Said('place empty')}")
     mesh = largest(mesh) if only_largest else mesh
     try:
         if mesh.triangle_count > TRIANGLES_MAX:

@@ -89,6 +89,9 @@ FORMS = {
     "of tolerance": "a tolerance of {tolerance:g} mm",
     "of allowance": "an allowance of {allowance:g} mm",
     "of both": "a tolerance of {tolerance:g} mm and an allowance of {allowance:g} mm",
+    # what a mesh has not
+    "unseen": "about {volume:.3g} mm3, {percent:.2g} % of what is left, is thinner than a voxel and not in the mesh; "
+              "smaller voxels have it",
     # why a solid has facets
     "too many shapes": "it has faces of more than {most} shapes",
     "loops open": "the edges of a face do not close",
@@ -165,10 +168,9 @@ class _Pointed:
 UNSEEN_SHARE = 1e-3
 
 
-def unseen_note(contour: Any) -> Optional[str]:
+def unseen_note(contour: Any) -> Optional[Said]:
     """What to say of material that a mesh has not (a Contour), None: of too little of it."""
     thin, whole = contour.unseen_mm3, contour.unseen_mm3 + contour.surface_mm3
     if thin <= UNSEEN_SHARE * whole:
         return None
-    return (f"note: about {thin:.3g} mm3, {100 * thin / whole:.2g} % of what is left, is thinner than a voxel and not "
-            "in the mesh; smaller voxels have it")
+    return Said("unseen", volume=thin, percent=100 * thin / whole)

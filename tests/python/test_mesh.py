@@ -63,7 +63,8 @@ def test_what_is_too_thin_is_told(tmp_path, capsys):
     stock.write(str(tmp_path / "stock.vdb"))
     assert main(["mesh", str(tmp_path / "stock.vdb"), "--measure"]) == 0
     said = capsys.readouterr()
-    assert "is thinner than a voxel and not in the mesh" in said.err and f"about {made.unseen_mm3:.3g} mm3" in said.err
+    assert f"swarf: note: about {made.unseen_mm3:.3g} mm3" in said.err
+    assert "is thinner than a voxel and not in the mesh" in said.err
     assert json.loads(said.out)["contour"]["unseen_mm3"] == pytest.approx(made.unseen_mm3)
     swarf.Stock.box((0, 0, -2), (10, 10, 0), VOXEL).write(str(tmp_path / "thick.vdb"))
     assert main(["mesh", str(tmp_path / "thick.vdb"), "--measure"]) == 0

@@ -141,6 +141,7 @@ def test_facets_and_why(tmp_path, capsys):
     told = capsys.readouterr().err
     text = step.read_text()
     made = json.loads((tmp_path / "report.json").read_text())["solids"][0]
+    assert made["off_mm"] is None
     assert status == 0 and re.search(r"note: .*part.stp: \d+ facets, .*not what is near \(", told)
     assert text.count("ADVANCED_FACE(") == text.count("=PLANE(") == made["faces"] and "near" in made["facets_because"]
     assert text.count("=LINE(") == made["faces"] * 3 // 2
@@ -155,6 +156,15 @@ def test_meshes_and_too_many(tmp_path, capsys, monkeypatch):
     (tmp_path / "part.step").unlink()
     monkeypatch.setattr(solids, "FACETS_MAX", 3)
     assert main(words) == 2 and "too many for facets" in capsys.readouterr().err
+    assert not (tmp_path / "part.step").exists()
+
+
+def test_nothing_left(tmp_path, capsys):
+    program = tmp_path / "all.nc"
+    program.write_text("G21 G90\nT1 M6\nS1000 M3\nG0 X-5 Y-5 Z5\nG1 Z-2 F100\nG1 X5 Y5\n")
+    assert main(["simulate", str(program), "--stock", "box:0,0,-1,1,1,0", *WORDS[2:], "--output",
+                 str(tmp_path / "part.step")]) == 2
+    assert "part.step: cannot be written: nothing is left of the stock\n" in capsys.readouterr().err
     assert not (tmp_path / "part.step").exists()
 
 

@@ -178,7 +178,7 @@ def run(arguments: argparse.Namespace) -> int:
               "itself there", file=sys.stderr)
     thin = unseen_note(made)
     if thin:
-        print(f"swarf: {thin}", file=sys.stderr)
+        print(f"swarf: note: {thin}", file=sys.stderr)
     if not made.budget_met:
         print(f"swarf: warning: {made.triangles} triangles are more than {arguments.budget}: an error of "
               f"{made.error_mm:g} mm leaves no fewer; allow a larger --error", file=sys.stderr)

@@ -93,7 +93,7 @@ def run(arguments: argparse.Namespace) -> int:
         told.append(f"warning: {cuts} pairs of triangles cut each other: the surface touches itself there")
     thin = result.contour and unseen_note(result.contour)
     if thin:
-        told.append(thin)
+        told.append(f"note: {thin}")
     if result.resampled_voxels:
         corners = ", at corners by up to 0.3" if result.resampled_voxels == RESAMPLED_FIELD else ""
         told.append(f"note: the stock was turned into new voxels, which are off by {result.resampled_voxels:g} voxels "

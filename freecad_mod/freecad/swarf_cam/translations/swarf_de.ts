@@ -1030,6 +1030,10 @@
             <translation>einer Toleranz von {tolerance:g} mm und einem Aufmaß von {allowance:g} mm</translation>
         </message>
         <message>
+            <source>about {volume:.3g} mm3, {percent:.2g} % of what is left, is thinner than a voxel and not in the mesh; smaller voxels have it</source>
+            <translation>etwa {volume:.3g} mm³, {percent:.2g} % des Übrigen, sind dünner als ein Voxel und nicht im Netz; kleinere Voxel zeigen sie</translation>
+        </message>
+        <message>
             <source>an allowance of {allowance:g} mm</source>
             <translation>einem Aufmaß von {allowance:g} mm</translation>
         </message>
