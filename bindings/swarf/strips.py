@@ -5,23 +5,19 @@ have together but the surface has not become two. Which edges and corners there 
 they lie is solved on the shapes."""
 from __future__ import annotations
 
-import math
 from typing import Optional, Sequence
 
 from . import chains, opening
-from ._native import Mesh, Surface
+from ._native import Surface
 from .chains import SLOPPY, Chain
 from .opening import Fan
+from .probe import ask
 from .progress import Report, check, share, told
-from .records import rows
 from .regions import Regions
 from .shapes import Equations, Shape, Vector, add, cross, distance, dot, meet, on, unit
 
-#: In voxels: how far to both sides the surface is asked, how closely, and how far it may lie above or below.
-REACH, STEP, DEEP = 1.5, 0.06, 0.5
-
-#: In voxels: from the middle to the corners of the triangles that ask.
-SMALL = 0.01
+#: In voxels: how far to both sides the surface is asked, and how closely.
+REACH, STEP = 1.5, 0.06
 
 #: In voxels: how far a vertex of the mesh may be from what is solved for it.
 OFF = 2.5
@@ -31,21 +27,6 @@ ROUNDS = 20
 
 #: Edges of a chain across which the surface is asked.
 ASKED = 3
-
-
-def ask(surface: Surface, places: Sequence[tuple[Vector, Vector]], voxel: float, moves: Optional[int],
-        progress: Report = None) -> list[Optional[Shape]]:
-    """The shape that the surface has at each place, looked for along a normal; None where none is near."""
-    vertices: list[Vector] = []
-    for place, normal in places:
-        u = unit(cross(normal, (1.0, 0.0, 0.0) if abs(normal[0]) < 0.6 else (0.0, 1.0, 0.0)))
-        v = cross(normal, u)
-        for angle in (0.0, 2 * math.pi / 3, 4 * math.pi / 3):
-            corner = add(add(place, u, SMALL * voxel * math.cos(angle)), v, SMALL * voxel * math.sin(angle))
-            vertices.append(corner)
-    mesh = Mesh(vertices, [(k, k + 1, k + 2) for k in range(0, len(vertices), 3)])
-    found = mesh.faces(surface, moves=moves, reach=DEEP * voxel, progress=progress)
-    return [Shape.of_row(row) if row[0] else None for row in rows(found)]
 
 
 class _Mender:

@@ -35,9 +35,9 @@ class Face:
 
 @dataclass
 class Brep:
-    """Solids as faces, edges and corners; ``shells``: faces that hang together; ``solids``: the outer shell of
-    each and those of the hollows in it; ``inexact_mm``: by how much faces miss
-    each other at edges, for the digits of the program."""
+    """Solids as faces, edges and corners; ``shells``: faces that hang together; ``solids``: the outer shell of each and
+    those of the hollows in it; ``inexact_mm``: by how much faces miss each other at edges, for the digits of the
+    program."""
 
     corners: list[Vector]
     edges: list[Edge]

@@ -7,10 +7,10 @@ from __future__ import annotations
 from typing import Optional
 
 from ._native import Surface
+from .probe import DEEP, ask
 from .progress import Report, share, told
 from .regions import Regions
 from .shapes import PLANE, Shape, Vector, add, cross, distance, dot, middle, unit
-from .strips import DEEP, ask
 from .topology import Brep
 
 #: In voxels: how far beside an edge the surface is asked.
