@@ -211,14 +211,16 @@ static void check_cancel(const swarf_cutter *cutter, const swarf_path *paths, ui
 static void check_neighbours(swarf_stock *stock, const float *values, int closed_form)
 {
     float *beside = malloc(SAMPLES * sizeof *beside);
-    if (!beside) exit(2);
-    for (int i = 0; i < SAMPLES; i++) grid_points[i][i % 3] += voxel;
-    CHECK_OK(swarf_stock_sample(stock, grid_points[0], SAMPLES, beside));
-    for (int i = 0; i < SAMPLES; i++) grid_points[i][i % 3] -= voxel;
+    double(*points)[3] = malloc(SAMPLES * sizeof *points);
+    if (!beside || !points) exit(2);
+    memcpy(points, grid_points, SAMPLES * sizeof *points);
+    for (int i = 0; i < SAMPLES; i++) points[i][i % 3] += voxel;
+    CHECK_OK(swarf_stock_sample(stock, points[0], SAMPLES, beside));
     double most = 0;
     for (int i = 0; i < SAMPLES; i++)
         if (values[i] <= 0 && beside[i] <= 0) most = fmax(most, fabs((double)values[i] - (double)beside[i]));
     CHECK_NEAR(most / voxel, 1, closed_form ? 1e-3 : 0.5);
+    free(points);
     free(beside);
 }
 
