@@ -43,7 +43,7 @@ static PyStructSequence_Field contour_fields[] = {
     {"budget_met", "Whether there are no more triangles than were allowed."},
     {"unseen_mm3", "Material thinner than a voxel that the mesh has not, about."},
     {"surface_mm3", "Volume within the surface that the mesh stands for, without what its flat triangles leave out of "
-                    "bulges and put into hollows."},
+                    "bulges and put into hollows; what fine adds by splitting edges is not in it."},
     {"split_edges", "Edges of triangles that left the surface and were split."},
     {NULL, NULL},
 };
