@@ -223,12 +223,13 @@ typedef struct stage {
     swarf_contour_report *report;
 } stage;
 
-/* Pairs of facets that cut each other, and how many of them are counted here. */
+/* What an attempt came to: pairs of facets that cut each other, and how many of them are counted here. */
 typedef struct found {
     swarf_facet_pair *pairs;
     size_t count;
     size_t fresh; /* that the band before has not seen, those of the layer above among them */
     size_t last;  /* that the next band will not see again */
+    size_t split; /* edges */
 } found;
 
 /* Pairs of facets that cut each other, those of two other bands aside. The facets stay, with all vertices. */
@@ -278,12 +279,10 @@ static swarf_status attempt(const stage *s, int first, found *out)
     uint8_t *marks = keeps ? mark_vertices(work, s->facets) : NULL;
     if (keeps && !marks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     const int fine = s->options->fine && work->surface;
-    size_t split = 0;
     swarf_status status = SWARF_OK;
     if (fine) /* later attempts can be broken off, but get no further */
         status = swarf_contour_crease(work, s->facets, &marks, s->creases, s->progress, first ? 0.7 : 0.99,
-                                      first ? 0.8 : 0.99, &split);
-    if (first) s->report->split_edges += split;
+                                      first ? 0.8 : 0.99, &out->split);
     swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
     if (status == SWARF_OK)
         status = swarf_facets_simplify(s->facets, s->options->error_mm, voxel, s->options->triangle_budget, marks,
@@ -377,6 +376,7 @@ static swarf_status settle(const stage *s)
         free(now.pairs);
         if (now.count == 0 || round == ATTEMPTS) {
             s->report->intersections_left += now.last;
+            s->report->split_edges += now.split;
             return SWARF_OK;
         }
         SWARF_TRY(take_care(s));
