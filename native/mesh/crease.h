@@ -88,14 +88,15 @@ typedef struct crease_cuts {
 /** The facets near those that are cut, without these; *out is freed by the caller. */
 swarf_status swarf_crease_near(const contour *work, const swarf_facets *facets, const crease_cuts *cuts, uint32_t **out,
                                size_t *count);
-/** Sets crossed[] of the cuts with a part that cuts another or one of the facets near, as far as they are fresh. */
+/** Sets crossed[] of the cuts with a part that cuts another or one of the facets near, as far as they are fresh.
+ *  Progress is reported from `from` to 1. */
 swarf_status swarf_crease_find_crossed(const swarf_facets *facets, const crease_cuts *cuts, const uint32_t *near,
-                                       size_t near_count, uint8_t *crossed);
+                                       size_t near_count, const swarf_progress *progress, double from,
+                                       uint8_t *crossed);
 
-/** Put the splits into the facets, less those by which a part of a facet would turn over or cut
- *  another. `*marks` (NULL: none) grow with
- *  the vertices; *changed: the facets that were cut and their parts, freed by the caller; *made: splits of this band.
- */
+/** Put the splits into the facets, less those by which a part of a facet would turn over or cut another. Progress is
+ *  reported from `from` to 1. `*marks` (NULL: none) grow with the vertices; *changed: the facets that were cut and
+ *  their parts, freed by the caller; *made: splits of this band. */
 swarf_status swarf_crease_cut(crease_splits *splits, swarf_facets *facets, uint8_t **marks,
                               const swarf_progress *progress, double from, uint32_t **changed, size_t *changed_count,
                               size_t *made);

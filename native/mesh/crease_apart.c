@@ -136,13 +136,13 @@ static swarf_status gather(const swarf_facets *facets, const crease_cuts *cuts, 
 }
 
 swarf_status swarf_crease_find_crossed(const swarf_facets *facets, const crease_cuts *cuts, const uint32_t *near,
-                                       size_t near_count, uint8_t *crossed)
+                                       size_t near_count, const swarf_progress *progress, double from, uint8_t *crossed)
 {
     gathered g = {0};
     swarf_facet_pair *pairs = NULL;
     size_t count = 0;
     swarf_status status = gather(facets, cuts, near, near_count, &g);
-    if (status == SWARF_OK) status = swarf_facets_intersect(&g.facets, g.fresh, NULL, 0, 1, &pairs, &count);
+    if (status == SWARF_OK) status = swarf_facets_intersect(&g.facets, g.fresh, progress, from, 1, &pairs, &count);
     for (size_t i = 0; status == SWARF_OK && i < count; i++) {
         const uint32_t both[2] = {g.cut_of[pairs[i].a], g.cut_of[pairs[i].b]};
         for (int k = 0; k < 2; k++)

@@ -17,6 +17,8 @@
 static const double least_height = 1e-3, least_cosine = 0.17;
 /* A part that faces so nearly as the surface does at its middle is on that face. */
 static const double same_face_cosine = 0.95;
+/* Progress from which on parts that cut others are looked for. */
+static const double apart_from = 0.8;
 
 enum { NONE = UINT32_MAX };
 
@@ -229,11 +231,11 @@ static void give_up(cutting *c, uint32_t number)
 }
 
 /* Cut up what is waiting; facets that turn over give up their splits. */
-static swarf_status cut_waiting(cutting *c, const swarf_progress *progress, double from)
+static swarf_status cut_waiting(cutting *c, const swarf_progress *progress, double from, double to)
 {
     for (int first = 1; c->waiting_count; first = 0) {
         SWARF_TRY(swarf_parallel_for((c->waiting_count + SWARF_CREASE_CHUNK - 1) / SWARF_CREASE_CHUNK, cut_some, c,
-                                     progress, first ? from : 1, 1));
+                                     progress, first ? from : to, to));
         for (size_t i = 0; i < c->waiting_count; i++)
             if (!c->cuts.cut[c->waiting[i]].parts) give_up(c, c->waiting[i]);
         begin_next(c);
@@ -242,17 +244,18 @@ static swarf_status cut_waiting(cutting *c, const swarf_progress *progress, doub
 }
 
 /* Facets with parts that cut others give up their splits, until none do. */
-static swarf_status cut_apart(cutting *c, const uint32_t *near, size_t near_count)
+static swarf_status cut_apart(cutting *c, const uint32_t *near, size_t near_count, const swarf_progress *progress)
 {
-    for (;;) {
+    for (int first = 1;; first = 0) {
         memset(c->crossed, 0, c->cuts.count);
-        SWARF_TRY(swarf_crease_find_crossed(c->splits->facets, &c->cuts, near, near_count, c->crossed));
+        SWARF_TRY(swarf_crease_find_crossed(c->splits->facets, &c->cuts, near, near_count, progress,
+                                            first ? apart_from : 1, c->crossed));
         for (size_t i = 0; i < c->cuts.count; i++) c->cuts.cut[i].fresh = 0;
         for (size_t i = 0; i < c->cuts.count; i++)
             if (c->crossed[i]) give_up(c, (uint32_t)i);
         begin_next(c);
         if (!c->waiting_count) return SWARF_OK;
-        SWARF_TRY(cut_waiting(c, NULL, 1));
+        SWARF_TRY(cut_waiting(c, progress, 1, 1));
     }
 }
 
@@ -262,9 +265,9 @@ static swarf_status cut_facets(cutting *c, const swarf_progress *progress, doubl
     size_t near_count;
     list_cuts(c);
     if (!c->cuts.count) return SWARF_OK;
-    SWARF_TRY(cut_waiting(c, progress, from));
+    SWARF_TRY(cut_waiting(c, progress, from, apart_from));
     SWARF_TRY(swarf_crease_near(c->splits->work, c->splits->facets, &c->cuts, &near, &near_count));
-    const swarf_status status = cut_apart(c, near, near_count);
+    const swarf_status status = cut_apart(c, near, near_count, progress);
     free(near);
     return status;
 }

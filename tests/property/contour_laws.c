@@ -34,7 +34,15 @@ typedef struct listener {
     int back;        /* reports of less than there was before */
     double done;
     int among[3]; /* reports before the facets are split, meanwhile, later */
+    int apart;    /* the first one while parts that cut others are looked for; 0: none */
 } listener;
+
+/* Whether a report is of the last fifth of one of the six rounds in which facets are split. */
+static int is_apart(double fraction)
+{
+    const double rounds = (fraction - 0.7) * 60, left = ceil(rounds - 1e-6) - rounds;
+    return fraction > 0.7 && fraction < 0.8 && left < 0.19;
+}
 
 static int listen(void *user, double fraction)
 {
@@ -42,7 +50,9 @@ static int listen(void *user, double fraction)
     l->back += fraction < l->done;
     l->done = fraction;
     l->among[fraction <= 0.7 ? 0 : fraction < 0.8 ? 1 : 2]++;
-    return ++l->calls == l->last;
+    l->calls++;
+    if (!l->apart && is_apart(fraction)) l->apart = l->calls;
+    return l->calls == l->last;
 }
 
 /* A fine mesh tells its progress, and can be broken off at every stage. */
@@ -58,10 +68,10 @@ static void check_cancel(swarf_stock *stock, const swarf_surface *surface)
     CHECK_OK(swarf_threads_set(1));
     CHECK_OK(swarf_mesh_contour(stock, &options, &(swarf_progress){listen, &all}, &mesh, NULL));
     CHECK(all.back == 0 && all.done == 1);
-    CHECK(all.among[0] && all.among[1] && all.among[2]);
+    CHECK(all.among[0] && all.among[1] && all.among[2] && all.apart);
     swarf_mesh_release(mesh);
-    for (int i = 1; i <= TIMES; i++) {
-        listener some = {.last = 1 + i * (all.calls - 1) / (TIMES + 1)};
+    for (int i = 0; i <= TIMES; i++) {
+        listener some = {.last = i ? 1 + i * (all.calls - 1) / (TIMES + 1) : all.apart};
         swarf_mesh *none = NULL;
         CHECK_FAILS(swarf_mesh_contour(stock, &options, &(swarf_progress){listen, &some}, &none, NULL),
                     SWARF_ERROR_CANCELLED, NULL);
