@@ -24,8 +24,8 @@
  * Only these, so that the mesh does not change with every byte that is free. */
 enum { WIDE = 256, NARROW = 64 };
 /* Bytes that making a whole mesh needs beside the stock, by leaf of it: with an error, which tiles make use of, and
- * with none. Measured: 8 600 (bear and cameo, N = 1024, 0.1 voxel) and 15 400 (bear). */
-static const double bytes_per_leaf = 9000, bytes_per_full_leaf = 16000;
+ * with none. Measured at most (bear and cameo, N = 512 and 1024, fine or not): 14 500 (0.1 voxel) and 31 400. */
+static const double bytes_per_leaf = 16000, bytes_per_full_leaf = 33000;
 
 typedef struct streaming {
     contour work;
