@@ -23,9 +23,10 @@
 /* Voxels of a band: what is done twice is three layers of 8 at most, a tenth of a wide one.
  * Only these, so that the mesh does not change with every byte that is free. */
 enum { WIDE = 256, NARROW = 64 };
-/* Bytes that making a whole mesh needs beside the stock, by leaf of it: with an error, which tiles make use of, and
- * with none. Measured at most (bear and cameo, N = 512 and 1024, fine or not): 14 500 (0.1 voxel) and 31 400. */
-static const double bytes_per_leaf = 16000, bytes_per_full_leaf = 33000;
+/* Bytes that making a whole mesh needs beside the stock, by leaf of it: with an error, which tiles make use of, with
+ * none, and what fine adds at most. Measured (bear and cameo, N = 512 and 1024; 0.1 voxel): 15 100, 30 700, 17 500.
+ * With coarser voxels it is up to two and a half times as much, which is 160 MB then (cameo, N = 256). */
+static const double bytes_per_leaf = 16000, bytes_per_full_leaf = 33000, bytes_per_fine_leaf = 18000;
 
 typedef struct streaming {
     contour work;
@@ -251,12 +252,14 @@ static swarf_status make_bands(streaming *s, const swarf_progress *progress, int
 }
 
 /* All of the stock where the memory allows it, and where the count cannot be put before what is written already. */
-static int32_t choose_width(const swarf_stock *stock, double error_mm, size_t memory_limit, int can_seek)
+static int32_t choose_width(const swarf_stock *stock, const swarf_contour_options *options, size_t memory_limit,
+                            int can_seek)
 {
     size_t leaves, bytes;
     swarf_tree_size(stock->tree, &leaves, &bytes);
-    const double limit = swarf_memory_limit(memory_limit), each = error_mm > 0 ? bytes_per_leaf : bytes_per_full_leaf,
-                 needed = (double)leaves * each;
+    const double each = (options->error_mm > 0 ? bytes_per_leaf : bytes_per_full_leaf) +
+                        (options->fine && options->surface ? bytes_per_fine_leaf : 0);
+    const double limit = swarf_memory_limit(memory_limit), needed = (double)leaves * each;
     const int32_t all = swarf_tree_get_layout(stock->tree)->count[0] * SWARF_NODE_DIM;
     if (needed <= limit || !can_seek) return all;
     return needed * WIDE / all <= limit ? WIDE : NARROW;
@@ -280,7 +283,7 @@ swarf_status swarf_mesh_stream(swarf_stock *stock, const swarf_contour_options *
     const int can_seek = fseek(s.stream, 0, SEEK_SET) == 0;
     swarf_status status = swarf_contour_begin(stock, options, &s.work);
     if (status == SWARF_OK) {
-        status = make_bands(&s, progress, choose_width(stock, options->error_mm, memory_limit, can_seek));
+        status = make_bands(&s, progress, choose_width(stock, options, memory_limit, can_seek));
         if (status == SWARF_OK) status = swarf_progress_report(progress, 1);
         drop_handed(&s);
         swarf_facets_free(&s.band.below);
