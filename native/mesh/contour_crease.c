@@ -301,7 +301,7 @@ typedef struct keyed {
     crease_edge pair[2];
 } keyed;
 
-static int by_cube(const void *a, const void *b)
+static int pairs_by_cube(const void *a, const void *b)
 {
     const keyed *x = a, *y = b;
     if (x->cube != y->cube) return x->cube < y->cube ? -1 : 1;
@@ -321,7 +321,7 @@ static swarf_status sort_pairs(const contour *work, const swarf_facets *facets, 
         pairs[i].cube = swarf_crease_cube(work, p, 0, 0, 0);
         memcpy(pairs[i].pair, &edges[2 * i], sizeof pairs[i].pair);
     }
-    if (count) qsort(pairs, count, sizeof *pairs, by_cube);
+    if (count) qsort(pairs, count, sizeof *pairs, pairs_by_cube);
     for (size_t i = 0; i < count; i++) memcpy(&edges[2 * i], pairs[i].pair, sizeof pairs[i].pair);
     free(pairs);
     return SWARF_OK;
@@ -345,8 +345,8 @@ static size_t keep_steep(const crease_edge *steep, size_t steep_count, crease_ed
 }
 
 /* Edges that are steep on one of their sides at least, in both facets: of the facets listed, or (NULL) of all. */
-static swarf_status find_pairs(const contour *work, const swarf_facets *facets, const uint8_t *marks,
-                               const uint32_t *changed, size_t changed_count, crease_edge **edges, size_t *count)
+static swarf_status find_steep_pairs(const contour *work, const swarf_facets *facets, const uint8_t *marks,
+                                     const uint32_t *changed, size_t changed_count, crease_edge **edges, size_t *count)
 {
     finding s = {.facets = facets, .marks = marks, .voxel = work->layout->voxel};
     crease_edge *steep, *both = NULL;
@@ -446,7 +446,7 @@ swarf_status swarf_contour_crease(const contour *work, swarf_facets *facets, uin
                                       from + (round + 1) * (to - from) / ROUNDS};
         const swarf_progress part = swarf_progress_part(&share);
         size_t own = 0;
-        status = find_pairs(work, facets, *marks, r.changed, r.changed_count, &s.edges, &s.count);
+        status = find_steep_pairs(work, facets, *marks, r.changed, r.changed_count, &s.edges, &s.count);
         if (status == SWARF_OK) status = split_edges(&s, facets, marks, memo, progress ? &part : NULL, &r, &own);
         free(s.edges);
         *made += own;

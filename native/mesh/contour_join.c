@@ -131,9 +131,8 @@ static int choose_diagonal(const corner q[4], int axis, int outwards, const cont
     return best;
 }
 
-/* Volume between a triangle and the plane z = 0 of the layout, in voxels; summed up over a closed surface what is
- * within.
- */
+/* Volume between a triangle and the plane z = 0 of the layout, in voxels: the sum over a closed surface is what is
+ * within. */
 static double beneath(const int32_t voxel[3], const double *a, const double *b, const double *c)
 {
     const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);

@@ -58,16 +58,16 @@ static swarf_status find_cubes(const contour *work, const swarf_facets *facets, 
     return SWARF_OK;
 }
 
-typedef struct looking {
+typedef struct nearness {
     const contour *work;
     const swarf_facets *facets;
     const cube_set *cubes;
     uint8_t *near;
-} looking;
+} nearness;
 
 static swarf_status look_some(void *context, size_t index)
 {
-    const looking *l = context;
+    const nearness *l = context;
     for (size_t f = index * PIECE; f < (index + 1) * PIECE && f < l->facets->facet_count; f++) {
         double middle[3];
         middle_of(l->facets, &l->facets->facet[f], middle);
@@ -81,7 +81,7 @@ swarf_status swarf_crease_near(const contour *work, const swarf_facets *facets, 
                                size_t *count)
 {
     cube_set cubes = {0};
-    looking l = {work, facets, &cubes, malloc(facets->facet_count + 1)};
+    nearness l = {work, facets, &cubes, malloc(facets->facet_count + 1)};
     swarf_status status =
         l.near ? find_cubes(work, facets, cuts, &cubes) : swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     if (status == SWARF_OK)

@@ -161,7 +161,7 @@ static int by_facet(const void *a, const void *b)
     return (x->facet > y->facet) - (x->facet < y->facet);
 }
 
-static int by_cube(const void *a, const void *b)
+static int cuts_by_cube(const void *a, const void *b)
 {
     const crease_cut *x = a, *y = b;
     if (x->cube != y->cube) return x->cube < y->cube ? -1 : 1;
@@ -190,7 +190,7 @@ static void list_cuts(cutting *c)
         for (int k = 0; k < 3; k++)
             if (c->cuts.cut[i].at[k] != NONE) c->cuts.cut[kept - 1].at[k] = c->cuts.cut[i].at[k];
     }
-    if (kept) qsort(c->cuts.cut, kept, sizeof *c->cuts.cut, by_cube);
+    if (kept) qsort(c->cuts.cut, kept, sizeof *c->cuts.cut, cuts_by_cube);
     c->cuts.count = c->waiting_count = kept;
     for (size_t i = 0; i < kept; i++) {
         c->waiting[i] = (uint32_t)i;

@@ -39,7 +39,7 @@ void swarf_facets_memo_free(swarf_facets_memo *memo);
 
 /** Remove vertices while the surface stays within error_mm of what came in, keeping edges sharper than 25 degrees,
  *  corners and topology; stops at `budget` facets (0: none). `marks` of vertices may be NULL: none; `memo` too, and is
- * not used with a budget. The error of what is left is in the facets. */
+ *  not used with a budget. The error of what is left is in the facets. */
 swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget,
                                    const uint8_t *marks, swarf_facets_memo *memo, const swarf_progress *progress,
                                    double from, double to);
