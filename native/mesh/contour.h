@@ -45,6 +45,8 @@ typedef struct contour_table {
 } contour_table;
 
 void swarf_contour_table_fill(contour_table *table);
+/** Where the edges of a cell start, from the cell. */
+extern const int swarf_contour_edge_offset[12][3];
 
 /** A crossing, `t` from its voxel to the next, the normal out of the material. */
 typedef struct contour_crossing {

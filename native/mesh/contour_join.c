@@ -180,8 +180,7 @@ swarf_status swarf_contour_unfold(contour *work, contour_block *block)
             for (int edge = 0; edge < 12 && !folded; edge++) {
                 const int axis = edge / 4;
                 int32_t voxel[3] = {block->ijk[0] + x, block->ijk[1] + (bit >> 3), block->ijk[2] + (bit & 7)};
-                voxel[(axis + 1) % 3] += edge >> 1 & 1;
-                voxel[(axis + 2) % 3] += edge & 1;
+                for (int k = 0; k < 3; k++) voxel[k] += swarf_contour_edge_offset[edge][k];
                 folded = is_folded(work, block, voxel, axis);
             }
             if (folded) block->own_mask[x] |= word & -word;

@@ -44,17 +44,13 @@ static int is_flipped(placing *p, int config, const int at[3])
     return p->work->table.entry[behind][0].twice_on_face == (face ^ 1);
 }
 
-/* Where the edges of a cell start, from the cell. */
-static const int edge_offset[12][3] = {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0, 1, 1}, {0, 0, 0}, {1, 0, 0},
-                                       {0, 0, 1}, {1, 0, 1}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}};
-
 /* Gather the crossings of one cycle. */
 static void gather(const placing *p, const int at[3], const contour_case *joined, int cycle, contour_polygon *out)
 {
     out->count = 0;
     for (unsigned left = joined->edges[cycle]; left; left &= left - 1) {
         const int edge = __builtin_ctz(left), axis = edge / 4;
-        const int *offset = edge_offset[edge];
+        const int *offset = swarf_contour_edge_offset[edge];
         int32_t voxel[3];
         for (int k = 0; k < 3; k++) voxel[k] = p->block->ijk[k] + at[k] + offset[k];
         const contour_crossing *crossing = swarf_contour_crossing(p->work, p->block, voxel, axis);
@@ -133,7 +129,7 @@ static void make_exact(contour_polygon *polygon, const swarf_surface_near *near,
     for (int i = 0; i < polygon->count; i++) {
         if (polygon->move[i] != SWARF_BY_FLAT_FIELD) continue;
         const int axis = polygon->edge[i] / 4;
-        const int *offset = edge_offset[polygon->edge[i]];
+        const int *offset = swarf_contour_edge_offset[polygon->edge[i]];
         double a[3];
         for (int k = 0; k < 3; k++) a[k] = polygon->origin[k] + offset[k] * polygon->voxel;
         const int outwards = config >> (offset[0] * 4 + offset[1] * 2 + offset[2]) & 1;

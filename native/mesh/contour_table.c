@@ -13,6 +13,9 @@
 
 #include <string.h>
 
+const int swarf_contour_edge_offset[12][3] = {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0, 1, 1}, {0, 0, 0}, {1, 0, 0},
+                                              {0, 0, 1}, {1, 0, 1}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}};
+
 /* Corner number of offsets along three axes, the first being `axis`. */
 static int corner_of(int axis, int along, int next, int after)
 {

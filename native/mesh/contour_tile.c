@@ -79,8 +79,7 @@ static void plane_of(const tiling *t, int x, int bit, uint32_t vertex, contour_p
     for (int edge = 0; edge < 12; edge++) {
         const int axis = edge / 4;
         int32_t voxel[3] = {corner[0] + x, corner[1] + (bit >> 3), corner[2] + (bit & 7)};
-        voxel[(axis + 1) % 3] += edge >> 1 & 1;
-        voxel[(axis + 2) % 3] += edge & 1;
+        for (int k = 0; k < 3; k++) voxel[k] += swarf_contour_edge_offset[edge][k];
         const contour_crossing *crossing = swarf_contour_crossing(t->work, t->block, voxel, axis);
         if (!crossing) continue;
         for (int k = 0; k < 3; k++) out->normal[k] = (double)crossing->normal[k];
