@@ -25,7 +25,7 @@ typedef struct simplify_region {
     uint32_t *global; /* their numbers in the whole mesh */
     uint32_t *head;   /* first corner of each vertex's list */
     uint8_t *state;   /* SIMPLIFY_FIXED, SIMPLIFY_DIRTY, SIMPLIFY_BENT */
-    uint32_t *mark;   /* stamps of the ring being looked at */
+    uint32_t *mark;   /* of vertices on the ring being looked at: its stamp + the place in it */
     float *need; /* error below which a vertex that was looked at cannot go; INFINITY: whatever it is; 0 at first */
     size_t vertex_count;
     simplify_facet *facet;

@@ -1,0 +1,4 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* The kernel for avx512; see ring_body.h. */
+#define KERNEL_NAME swarf_ring_kernel_avx512
+#include "mesh/ring_body.h"
