@@ -20,8 +20,12 @@
 /* In voxels: an edge farther out of the planes of its facets is looked at, and split where the surface is farther away
  * than half of that, which is what may be missed then; ends are on the surface; a split is this far from the ends. */
 static const double out_of_plane = 0.1, off_surface = 0.05, on_surface = 0.01, from_ends = 0.05;
-/* In voxels: how far beside an edge it may be split. */
-static const double beside = 1;
+/* In voxels: how far beside an edge it may be split; and where no faces meet so near, as before the tip of a lip that
+ * gets thinner than a voxel. Farther out parts of facets reach beyond those that are held against them. */
+static const double beside = 1, far_beside = 3;
+/* Planes that differ by less than 3.6 degrees do not tell where they meet: an eigenvalue is below this part of the
+ * greatest. */
+static const double least_eigenvalue = 1e-3;
 /* Splits are drawn this part of the way to the middle of the facets' other vertices, so that those of two edges that
  * lie above each other part. */
 static const double spread = 0.5;
@@ -30,19 +34,19 @@ enum { ROUNDS = 6 };
 /* Where along an edge faces are looked for: a narrow one is seen from near its end only. */
 static const double samples[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
-/* The edges of a facet that leave its plane, a bit each. */
-static unsigned find_steep(const swarf_facets *facets, const swarf_facet *facet, double voxel)
+/* Whether an edge of a facet leaves its plane. Then all of them are looked at: the one between two vertices below a
+ * narrow land, on either side of it, passes under it and is as level as the land. */
+static int is_steep(const swarf_facets *facets, const swarf_facet *facet, double voxel)
 {
     double height[3];
-    unsigned steep = 0;
+    int steep = 0;
     const float scale = 1.0f / 32767;
     for (size_t k = 0; k < 3; k++) {
         const float *p = facets->xyz + 3 * (size_t)facet->v[k];
         height[k] = 0;
         for (int c = 0; c < 3; c++) height[k] += (double)((float)facet->normal[c] * scale) * (double)p[c];
     }
-    for (unsigned k = 0; k < 3; k++)
-        steep |= (unsigned)(fabs(height[(k + 1) % 3] - height[k]) > out_of_plane * voxel) << k;
+    for (int k = 0; k < 3; k++) steep |= fabs(height[(k + 1) % 3] - height[k]) > out_of_plane * voxel;
     return steep;
 }
 
@@ -111,6 +115,40 @@ static int is_between(const looking *l, const double x[3])
     return fmin(to_p, to_q) > from_ends * from_ends * l->voxel * l->voxel;
 }
 
+/* Add the face that a place is drawn onto, with a point of it that lies `aside` along it; 0 when none is reached. */
+static int add_face(const looking *l, double x[3], const double aside[3], contour_polygon *polygon)
+{
+    swarf_surface_point found;
+    if (!draw_onto(l, x, &found)) return 0;
+    const int n = polygon->count++;
+    for (int k = 0; k < 3; k++) {
+        const double moved = aside[k] - swarf_crease_dot(aside, found.normal) * found.normal[k];
+        polygon->point[n][k] = (x[k] + moved - l->box.lo[k]) / l->voxel;
+        polygon->normal[n][k] = found.normal[k];
+    }
+    polygon->move[n] = (int32_t)found.move;
+    polygon->piece[n] = found.piece;
+    return 1;
+}
+
+/* Add the face that is in front of where the planes of the others would meet, as the wall at the end of a lip. */
+static int add_hidden(const looking *l, contour_polygon *polygon)
+{
+    contour_plane planes[12];
+    double middle[3] = {0}, x[3];
+    for (int i = 0; i < polygon->count; i++) {
+        memcpy(planes[i].point, polygon->point[i], sizeof planes[i].point);
+        memcpy(planes[i].normal, polygon->normal[i], sizeof planes[i].normal);
+        for (int k = 0; k < 3; k++) middle[k] += polygon->point[i][k] / polygon->count;
+    }
+    if (swarf_contour_meet(planes, polygon->count, middle, least_eigenvalue, &polygon->bounds, x) < 2) return 0;
+    for (int k = 0; k < 3; k++) {
+        x[k] = polygon->origin[k] + x[k] * l->voxel;
+        if (x[k] < l->box.lo[k] || x[k] > l->box.hi[k]) return 0;
+    }
+    return add_face(l, x, (const double[3]){0}, polygon);
+}
+
 /* Where faces meet that are seen along the edge. */
 static int meet_along(const looking *l, double out[3])
 {
@@ -121,20 +159,14 @@ static int meet_along(const looking *l, double out[3])
     }
     for (int i = 0; i < (int)(sizeof samples / sizeof *samples); i++) {
         double x[3];
-        swarf_surface_point found;
         along(l, samples[i], x);
-        if (!draw_onto(l, x, &found)) continue;
-        const int n = polygon.count++;
-        for (int k = 0; k < 3; k++) {
-            const double aside = l->aside[k] - swarf_crease_dot(l->aside, found.normal) * found.normal[k];
-            polygon.point[n][k] = (x[k] + aside - l->box.lo[k]) / l->voxel;
-            polygon.normal[n][k] = found.normal[k];
-        }
-        polygon.move[n] = (int32_t)found.move;
-        polygon.piece[n] = found.piece;
+        add_face(l, x, l->aside, &polygon);
     }
     double x[3];
-    if (polygon.count < 2 || swarf_contour_vertex_exact(&polygon, l->look->near, x) < 2) return 0;
+    if (polygon.count < 2) return 0;
+    if (swarf_contour_vertex_exact(&polygon, l->look->near, x) < 2 &&
+        (!add_hidden(l, &polygon) || swarf_contour_vertex_exact(&polygon, l->look->near, x) < 2))
+        return 0;
     for (int k = 0; k < 3; k++) out[k] = polygon.origin[k] + x[k] * l->voxel;
     return is_between(l, out);
 }
@@ -147,14 +179,14 @@ static void find_corners(const crease_splits *s, const crease_edge edge[2], floa
     for (int k = 0; k < 4; k++) memcpy(out + 3 * (size_t)k, s->facets->xyz + 3 * (size_t)v[k], 3 * sizeof *out);
 }
 
-static void begin_edge(const float corners[12], double voxel, looking *l)
+static void begin_edge(const float corners[12], double voxel, double around, looking *l)
 {
     for (int k = 0; k < 3; k++) {
         l->p[k] = (double)corners[k];
         l->q[k] = (double)corners[3 + k];
         l->aside[k] = 0.5 * spread * ((double)corners[6 + k] + (double)corners[9 + k] - (l->p[k] + l->q[k]));
-        l->box.lo[k] = fmin(l->p[k], l->q[k]) - beside * voxel;
-        l->box.hi[k] = fmax(l->p[k], l->q[k]) + beside * voxel;
+        l->box.lo[k] = fmin(l->p[k], l->q[k]) - around * voxel;
+        l->box.hi[k] = fmax(l->p[k], l->q[k]) + around * voxel;
     }
 }
 
@@ -168,13 +200,18 @@ static swarf_status split_edge(const crease_splits *s, crease_look *near, size_t
         *split = *known;
         return SWARF_OK;
     }
-    begin_edge(split->corners, l.voxel, &l);
+    begin_edge(split->corners, l.voxel, beside, &l);
     SWARF_TRY(swarf_crease_look_into(near, &l.box));
     split->off = (float)find_off(&l);
     if ((double)split->off <= off_surface) return SWARF_OK;
     double x[3];
     swarf_surface_point found;
     split->made = (uint8_t)meet_along(&l, x);
+    if (!split->made) {
+        begin_edge(split->corners, l.voxel, far_beside, &l);
+        SWARF_TRY(swarf_crease_look_into(near, &l.box));
+        split->made = (uint8_t)meet_along(&l, x);
+    }
     if (!split->made) {
         along(&l, 0.5, x);
         split->made = draw_onto(&l, x, &found) && is_between(&l, x);
@@ -196,7 +233,7 @@ static swarf_status split_some(void *context, size_t index)
     return status;
 }
 
-/* ---- steep edges ------------------------------------------------------------------------------------------------- */
+/* ---- edges of steep facets --------------------------------------------------------------------------------------- */
 
 typedef struct finding {
     const swarf_facets *facets;
@@ -204,7 +241,7 @@ typedef struct finding {
     double voxel;
     size_t *first;         /* of the edges of each piece; at first how many */
     crease_edge *edges;    /* that are put, NULL: they are counted */
-    const uint8_t *chosen; /* vertices of steep edges; NULL: edges are steep in their own facet */
+    const uint8_t *chosen; /* vertices of steep facets; NULL: those are looked for */
 } finding;
 
 enum { PIECE = 16384 };
@@ -216,7 +253,7 @@ static unsigned find_edges(const finding *s, const swarf_facet *facet)
     unsigned found = 0;
     if (!s->chosen && facet->error_mm > 0) return 0; /* in a tile */
     if (!s->chosen)
-        found = find_steep(s->facets, facet, s->voxel);
+        found = is_steep(s->facets, facet, s->voxel) ? 7 : 0;
     else
         for (unsigned k = 0; k < 3; k++) found |= (unsigned)(s->chosen[v[k]] & s->chosen[v[(k + 1) % 3]]) << k;
     for (unsigned k = 0; k < 3 && found && s->marks; k++)
@@ -280,7 +317,7 @@ static int is_same(const crease_edge *a, const crease_edge *b)
     return memcmp(a->v, b->v, sizeof a->v) == 0;
 }
 
-/* The edges of the facets listed that are steep. */
+/* The edges of the steep ones of the facets listed. */
 static swarf_status list_changed(const finding *s, const uint32_t *changed, size_t changed_count, crease_edge **edges,
                                  size_t *count)
 {
@@ -327,7 +364,7 @@ static swarf_status sort_pairs(const contour *work, const swarf_facets *facets, 
     return SWARF_OK;
 }
 
-/* Edges, of `both` of their facets each, that are among the steep ones; returns how many. */
+/* Edges, of `both` of their facets each, that are among those of steep facets; returns how many. */
 static size_t keep_steep(const crease_edge *steep, size_t steep_count, crease_edge *both, size_t count)
 {
     size_t next = 0, kept = 0;
@@ -344,7 +381,8 @@ static size_t keep_steep(const crease_edge *steep, size_t steep_count, crease_ed
     return kept;
 }
 
-/* Edges that are steep on one of their sides at least, in both facets: of the facets listed, or (NULL) of all. */
+/* Edges that have a steep facet on one of their sides at least, in both facets: of the facets listed, or (NULL) of
+ * all. */
 static swarf_status find_steep_pairs(const contour *work, const swarf_facets *facets, const uint8_t *marks,
                                      const uint32_t *changed, size_t changed_count, crease_edge **edges, size_t *count)
 {

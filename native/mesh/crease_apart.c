@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Parts of facets that cut others: looked for among the facets in and about the cubes that parts are in. Larger ones,
- * those of tiles, are left to the check of the whole mesh. */
+/* Parts of facets that cut others: looked for among the facets in and about the cubes that the facets cut are in.
+ * Larger ones, those of tiles, and what long parts meet farther out are left to the check of the whole mesh. */
 #include "mesh/crease.h"
 
 #include "base/parallel.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Facets some of whose edges are split, cut into parts. Where a part would turn over the facet gives up its
- * splits; then the facets beside it are cut again, and no others, so that all splits together are given up once at
+/* Facets some of whose edges are split, cut into parts. Where a part would turn over the facet gives up its splits, one
+ * by one; then the facets beside it are cut again, and no others, so that all splits together are given up once at
  * most. */
 #include "mesh/crease.h"
 
@@ -88,11 +88,19 @@ static int add_part(const crease_look *l, const swarf_facets *facets, crease_cut
     return 1;
 }
 
+/* The two parts of a quad, along the diagonal nearer to the surface unless one turns over by that. */
 static int add_quad(const crease_look *l, const swarf_facets *facets, crease_cut *cut, const uint32_t q[4])
 {
-    const int d = off_middle(l, facets, q[1], q[3]) < off_middle(l, facets, q[0], q[2]);
-    return add_part(l, facets, cut, q[d], q[d + 1], q[d + 2]) &&
-           add_part(l, facets, cut, q[d], q[d + 2], q[(d + 3) % 4]);
+    const int first = off_middle(l, facets, q[1], q[3]) < off_middle(l, facets, q[0], q[2]);
+    const uint8_t before = cut->parts;
+    for (int i = 0; i < 2; i++) {
+        const int d = first ^ i;
+        cut->parts = before;
+        if (add_part(l, facets, cut, q[d], q[d + 1], q[d + 2]) &&
+            add_part(l, facets, cut, q[d], q[d + 2], q[(d + 3) % 4]))
+            return 1;
+    }
+    return 0;
 }
 
 static int count_splits(const crease_cut *cut)
@@ -224,6 +232,17 @@ static void begin_next(cutting *c)
     c->next_count = 0;
 }
 
+/* Of several splits only the one that matters least: without it the others may do. */
+static void give_up_one(cutting *c, uint32_t number)
+{
+    const uint32_t *at = c->cuts.cut[number].at;
+    uint32_t least = NONE;
+    for (int k = 0; k < 3; k++)
+        if (at[k] != NONE && (least == NONE || c->splits->split[at[k]].off < c->splits->split[least].off))
+            least = at[k];
+    if (least != NONE) unmake(c, least);
+}
+
 static void give_up(cutting *c, uint32_t number)
 {
     for (int k = 0; k < 3; k++)
@@ -237,7 +256,7 @@ static swarf_status cut_waiting(cutting *c, const swarf_progress *progress, doub
         SWARF_TRY(swarf_parallel_for((c->waiting_count + SWARF_CREASE_CHUNK - 1) / SWARF_CREASE_CHUNK, cut_some, c,
                                      progress, first ? from : to, to));
         for (size_t i = 0; i < c->waiting_count; i++)
-            if (!c->cuts.cut[c->waiting[i]].parts) give_up(c, c->waiting[i]);
+            if (!c->cuts.cut[c->waiting[i]].parts) give_up_one(c, c->waiting[i]);
         begin_next(c);
     }
     return SWARF_OK;

@@ -12,7 +12,7 @@
 static const double voxel = 0.2, pi = 3.14159265358979323846;
 static const swarf_box block = {{-7.03, -7.07, -5.02}, {7.05, 7.01, 0.01}};
 
-enum { MOST_PATHS = 4, MOST_SAMPLED = 500, MOST_EDGE_POINTS = 20000 };
+enum { MOST_PATHS = 4, MOST_SAMPLED = 2000, MOST_EDGE_POINTS = 20000 };
 
 typedef struct part {
     oracle_body body;
@@ -345,10 +345,10 @@ static swarf_program *make_program(const part *t)
 
 /* Part of the points, half of them on edges, that may be farther than the error: for cutters that leave wedges of air
  * or chip narrower than a voxel, in which no voxel's centre lies, and which end more than a cell away from the next:
- * sharp undercuts, threads. Twice what was seen with all motions. Without `fine` it was 0.234 for the thread mill, two
- * edges of which pass one cell all along its roots, 0.047 for the dovetail and 0.020 for the point. */
-static const double beyond_allowed[CASE_CUTTERS] = {0.005, 0.002, 0.002, 0.004, 0.002, 0.004, 0.002,
-                                                    0.002, 0.03,  0.008, 0.02,  0.044, 0.002, 0.008};
+ * sharp undercuts, threads. One and a half times what was seen with all motions. Without `fine` it was 0.234 for the
+ * thread mill, two edges of which pass one cell all along its roots, 0.047 for the dovetail and 0.020 for the point. */
+static const double beyond_allowed[CASE_CUTTERS] = {0.001, 0.001,  0.001, 0.001, 0.001,  0.0013, 0.001,
+                                                    0.001, 0.0055, 0.003, 0.008, 0.0152, 0.001,  0.0057};
 
 /* Simplified by an error, the mesh is within that of the true surface both ways. */
 static void check_reach(int index, const char *name, const part *truth, swarf_stock *stock,
@@ -511,11 +511,13 @@ static void check_surfaces(void)
 int main(void)
 {
     check_surfaces();
-    test_random random = test_random_begin(41);
+    const test_random begin = test_random_begin(41);
     const int full = getenv("SWARF_TEST_FULL") != NULL; /* else every other motion of each cutter */
     for (int index = 0; index < CASE_CUTTERS; index++)
-        for (int m = 0; m < MOTIONS; m++)
+        for (int m = 0; m < MOTIONS; m++) {
+            test_random random = begin; /* what is seen of one part does not hang on the others */
             if (full || (index + m) % 2 == 0) check_part(index, (motion)m, &random);
+        }
     CHECK(edges_seen > 1000); /* else nothing was shown of edges */
     return test_end();
 }
