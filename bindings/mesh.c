@@ -84,7 +84,7 @@ static PyObject *mesh_read(PyObject *type, PyObject *args, PyObject *keywords)
 
 /** What meshes of a stock are made with; 0, or -1 with an exception. */
 static int read_options(const module_state *state, double error, PyObject *given, PyObject *moves, int fine,
-                        swarf_contour_options *out)
+                        int keep_volume, swarf_contour_options *out)
 {
     if (given != Py_None && !PyObject_TypeCheck(given, state->surface)) {
         PyErr_Format(PyExc_TypeError, "surface: needs a Surface or None");
@@ -102,21 +102,22 @@ static int read_options(const module_state *state, double error, PyObject *given
     out->surface = surface ? surface->handle : NULL;
     out->moves = count;
     out->fine = fine;
+    out->keep_volume = keep_volume;
     return 0;
 }
 
 static PyObject *mesh_from_stock(PyObject *type, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"stock", "error", "budget", "surface", "moves", "fine", "progress", NULL};
+    static char *names[] = {"stock", "error", "budget", "surface", "moves", "fine", "keep_volume", "progress", NULL};
     module_state *state = state_of_type((PyTypeObject *)type);
     PyObject *stock, *surface = Py_None, *moves = Py_None, *progress = NULL;
     double error = 0;
-    int fine = 0;
+    int fine = 0, keep_volume = 0;
     Py_ssize_t budget = 0;
     swarf_contour_options options;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$nOOpO:from_stock", names, state->stock, &stock, &error,
-                                     &budget, &surface, &moves, &fine, &progress) ||
-        read_options(state, error, surface, moves, fine, &options))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$nOOppO:from_stock", names, state->stock, &stock, &error,
+                                     &budget, &surface, &moves, &fine, &keep_volume, &progress) ||
+        read_options(state, error, surface, moves, fine, keep_volume, &options))
         return NULL;
     if (budget < 0) return PyErr_Format(PyExc_ValueError, "budget: %zd is not a number of triangles", budget);
     options.triangle_budget = (size_t)budget;
@@ -149,17 +150,19 @@ static swarf_status stream_to(void *context, const char *path, const swarf_progr
 
 static PyObject *mesh_stream(PyObject *type, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"stock", "path", "error", "surface", "moves", "fine", "memory_limit", "progress", NULL};
+    static char *names[] = {"stock", "path",        "error",        "surface",  "moves",
+                            "fine",  "keep_volume", "memory_limit", "progress", NULL};
     module_state *state = state_of_type((PyTypeObject *)type);
     PyObject *stock, *path, *surface = Py_None, *moves = Py_None, *progress = NULL;
     double error = 0;
-    int fine = 0;
+    int fine = 0, keep_volume = 0;
     Py_ssize_t limit = 0;
     swarf_contour_options options;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O&|d$OOpnO:stream", names, state->stock, &stock,
-                                     PyUnicode_FSConverter, &path, &error, &surface, &moves, &fine, &limit, &progress))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O&|d$OOppnO:stream", names, state->stock, &stock,
+                                     PyUnicode_FSConverter, &path, &error, &surface, &moves, &fine, &keep_volume,
+                                     &limit, &progress))
         return NULL;
-    int bad = read_options(state, error, surface, moves, fine, &options);
+    int bad = read_options(state, error, surface, moves, fine, keep_volume, &options);
     if (!bad && limit < 0) {
         PyErr_Format(PyExc_ValueError, "memory_limit: %zd is not a number of bytes", limit);
         bad = -1;
@@ -294,16 +297,19 @@ static PyMethodDef mesh_methods[] = {
     {"read", WITH_KEYWORDS(mesh_read), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
      "read($type, path)\n--\n\nMesh from a .stl (welded), .ply or .obj file, by its content. OSError, FormatError."},
     {"from_stock", WITH_KEYWORDS(mesh_from_stock), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "from_stock($type, stock, error=0.0, *, budget=0, surface=None, moves=None, fine=False, progress=None)\n--\n\n"
+     "from_stock($type, stock, error=0.0, *, budget=0, surface=None, moves=None, fine=False, keep_volume=False,\n"
+     "progress=None)\n--\n\n"
      "The surface of a stock with its edges: closed, oriented outwards, no triangles that cut each other. Vertices "
      "are\n"
      "left out while the mesh stays within ``error`` mm of the full one, until at most ``budget`` triangles are left\n"
      "(0: as few as the error allows). Vertices lie exactly on the Surface of which the stock has seen the first\n"
      "``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. ``fine``: triangles\n"
-     "that leave the Surface, beside edges closer to each other than a voxel, are split; that takes longer. What it\n"
-     "came to is in ``contour``."},
+     "that leave the Surface, beside edges closer to each other than a voxel, are split; that takes longer.\n"
+     "``keep_volume``: vertices are shifted, by a fifth of the error at most (a hundredth of a voxel where it is 0),\n"
+     "until the mesh has the volume of the surface. What it came to is in ``contour``."},
     {"stream", WITH_KEYWORDS(mesh_stream), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
-     "stream($type, stock, path, error=0.0, *, surface=None, moves=None, fine=False, memory_limit=0, progress=None)\n"
+     "stream($type, stock, path, error=0.0, *, surface=None, moves=None, fine=False, keep_volume=False,\n"
+     "memory_limit=0, progress=None)\n"
      "--\n\n"
      "The mesh of from_stock() straight to a binary .stl file; its Contour. One that would not fit into\n"
      "``memory_limit`` (bytes; 0: 80 % of what is free now) is made and written band by band along x, with small\n"

@@ -77,6 +77,7 @@ def simulate(
     allowance: float = 0.0,
     drop_loose: bool = False,
     fine: bool = False,
+    keep_volume: bool = False,
     progress: Optional[Progress] = None,
 ) -> Result:
     """Cut a job's stock with its program; compare, mesh, picture and write what is asked for.
@@ -89,9 +90,9 @@ def simulate(
     .step file has faces as they were cut where that is possible, else facets, and ``solids`` of the result tells why.
     ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by, deviations green within
     ``tolerance`` of the design and ``allowance``, which is meant to be left on it (mm). Pieces that come loose are in
-    the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. ``fine``: as in
-    Mesh.from_stock(), of mesh files and the result's mesh. Seconds of each stage are in the result. Raises
-    what the stages raise; nothing is written before the cutting is done.
+    the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. ``fine``,
+    ``keep_volume``: as in Mesh.from_stock(), of mesh files and the result's mesh. Seconds of each stage are in the
+    result. Raises what the stages raise; nothing is written before the cutting is done.
     """
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")
@@ -120,7 +121,8 @@ def simulate(
     if meshed and (mesh or drop_loose or colour or not streams(
             [path for path in outputs if output_suffix(path) in MESH_SUFFIXES])):
         whole = stages.run("mesh", lambda report: Mesh.from_stock(
-            stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact, fine=fine, progress=report))
+            stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact, fine=fine, keep_volume=keep_volume,
+            progress=report))
         result.mesh, result.contour = whole, whole.contour
     if drop_loose and (result.loose.pieces or result.loose.crumbs):
         _drop_loose(result, stages)
@@ -131,7 +133,7 @@ def simulate(
         tints = _tints(colour, result.mesh, result, tolerance, allowance, stages)
     for path in outputs:
         if output_suffix(path) in MESH_SUFFIXES:
-            _write_mesh(path, result, tints, fine, stages)
+            _write_mesh(path, result, tints, fine, keep_volume, stages)
         elif output_suffix(path) in STOCK_SUFFIXES:
             stages.run("write", lambda report: result.stock.write(path, progress=report))
     if exact is not None:
@@ -164,12 +166,14 @@ def _tints(colour: str, mesh: Mesh, result: Result, tolerance: float, allowance:
         colour, mesh, result.surface, result.job, tolerance, progress=report, allowance=allowance))
 
 
-def _write_mesh(path: str, result: Result, tints: Optional[list[colours.RGB]], fine: bool, stages: Stages) -> None:
+def _write_mesh(path: str, result: Result, tints: Optional[list[colours.RGB]], fine: bool, keep_volume: bool,
+                stages: Stages) -> None:
     """The result's mesh to a file; streamed there where it has none."""
     if result.mesh is None:
         stock = result.stock
         result.contour = stages.run("mesh", lambda report: Mesh.stream(
-            stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=result.surface, fine=fine, progress=report))
+            stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=result.surface, fine=fine,
+            keep_volume=keep_volume, progress=report))
         return
     mesh = result.mesh
     stages.run("write", lambda report: mesh.write(path, colors=tints, progress=report))

@@ -81,6 +81,7 @@ static void put_facet(swarf_facet *facet, const contour_crossing *crossing, int 
     facet->v[1] = outwards ? b : c;
     facet->v[2] = outwards ? c : b;
     facet->error_mm = error;
+    facet->lost_mm3 = 0;
     for (int k = 0; k < 3; k++) facet->normal[k] = (int16_t)lrintf(crossing->normal[k] * 32767);
     facet->beyond = facet->before = 0;
 }
@@ -254,7 +255,10 @@ static void join_crossing(const contour *work, contour_block *block, joint *j)
     }
     add_three(block, j, d, d + 1, d + 2);
     add_three(block, j, d, d + 2, (d + 3) % 4);
-    block->within += between(j->crossing, j->axis, j->outwards, at);
+    const double lost = between(j->crossing, j->axis, j->outwards, at), voxel = work->layout->voxel;
+    for (uint32_t f = block->facet_count - 2; f < block->facet_count; f++)
+        block->facets[f].lost_mm3 = (float)(lost / 2 * voxel * voxel * voxel);
+    block->within += lost;
 }
 
 swarf_status swarf_contour_join(contour *work, contour_block *block)

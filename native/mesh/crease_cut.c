@@ -83,6 +83,7 @@ static int add_part(const crease_look *l, const swarf_facets *facets, crease_cut
     if (facing(l, p, n, normal) < least_cosine) return 0;
     swarf_facet *part = &cut->part[cut->parts++];
     *part = facets->facet[cut->facet];
+    part->lost_mm3 = 0;
     memcpy(part->v, v, sizeof part->v);
     for (int k = 0; k < 3; k++) part->normal[k] = (int16_t)lrint(normal[k] * 32767);
     return 1;

@@ -8,6 +8,7 @@
 typedef struct swarf_facet {
     uint32_t v[3];
     float error_mm;    /* bound of the distance to the first triangles here */
+    float lost_mm3;    /* volume between it and the surface that it stands for, outside of it */
     int16_t normal[3]; /* of the surface where the facet was made, * 32767 */
     int8_t beyond;     /* 1: of the next band (see contour.h) */
     int8_t before;     /* 1: of the layer that was beyond in the band before */
@@ -23,8 +24,8 @@ typedef struct swarf_facets {
 
 void swarf_facets_free(swarf_facets *facets);
 
-/** Drop vertices that no facet uses. */
-swarf_status swarf_facets_compact(swarf_facets *facets);
+/** Drop vertices that no facet uses; `marks` (NULL: none) go with the others. */
+swarf_status swarf_facets_compact(swarf_facets *facets, uint8_t *marks);
 
 /** Mark of vertices: stays. */
 enum { SWARF_VERTEX_LOCKED = 1 };
@@ -38,10 +39,15 @@ typedef struct swarf_facets_memo {
 void swarf_facets_memo_free(swarf_facets_memo *memo);
 
 /** Remove vertices while the surface stays within error_mm of what came in, keeping edges sharper than 25 degrees,
- *  corners and topology; stops at `budget` facets (0: none). `marks` of vertices may be NULL: none; `memo` too, and is
- *  not used with a budget. The error of what is left is in the facets. */
-swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget,
-                                   const uint8_t *marks, swarf_facets_memo *memo, const swarf_progress *progress,
-                                   double from, double to);
+ *  corners and topology; stops at `budget` facets (0: none). `marks` of vertices may be NULL: none; they go with the
+ *  vertices. `memo` may be NULL too, and is not used with a budget. The error of what is left, and the volume lost,
+ *  are in the facets. */
+swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget, uint8_t *marks,
+                                   swarf_facets_memo *memo, const swarf_progress *progress, double from, double to);
+
+/** Shift vertices by `most_mm` at most, along their faces' normals and so that edges stay on them, until the surface
+ *  has within it what its facets had lost. Those with *marks SWARF_VERTEX_LOCKED (NULL: none) stay; so do those whose
+ *  facets would turn. The shifts are added to the facets' errors. */
+swarf_status swarf_facets_regain(swarf_facets *facets, const uint8_t *marks, double most_mm);
 
 #endif

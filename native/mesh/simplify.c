@@ -28,7 +28,7 @@ enum { ERROR_STEPS = 8 };
 
 typedef struct job {
     swarf_facets *facets;
-    const uint8_t *marks;
+    uint8_t *marks;
     struct pass_memo *memo;   /* of this pass, NULL: none */
     double least[3], most[3]; /* of the vertices */
     double lo[3], edge, limit;
@@ -139,7 +139,7 @@ static void free_region(simplify_region *r)
 /* A facet that was left in a cube, in the numbers of the region. */
 typedef struct memo_facet {
     uint32_t owned, v[3];
-    float error_mm;
+    float error_mm, lost_mm3;
 } memo_facet;
 
 /* What a region became; told apart from others by what went in. */
@@ -200,12 +200,14 @@ static uint64_t print_of(const simplify_region *r)
     print = mix_all(print, r->need, r->vertex_count * sizeof *r->need);
     for (size_t f = 0; f < r->facet_count; f++) {
         const simplify_facet *here = &r->facet[f];
-        uint64_t words[3] = {here->v[0] | (uint64_t)here->v[1] << 32, here->v[2]};
-        uint32_t error;
+        uint64_t words[4] = {here->v[0] | (uint64_t)here->v[1] << 32, here->v[2]};
+        uint32_t error, lost;
         memcpy(&error, &here->error_mm, sizeof error);
+        memcpy(&lost, &here->lost_mm3, sizeof lost);
         words[1] |= (uint64_t)error << 32;
-        memcpy(&words[2], here->normal, sizeof here->normal);
-        for (int k = 0; k < 3; k++) print = mix(print, words[k]);
+        words[2] = lost;
+        memcpy(&words[3], here->normal, sizeof here->normal);
+        for (int k = 0; k < 4; k++) print = mix(print, words[k]);
     }
     return print;
 }
@@ -226,7 +228,7 @@ static void remember(const simplify_region *r, uint64_t print, cube_memo *memo)
         const simplify_facet *here = &r->facet[f];
         if (!here->alive) continue;
         memo->facet[memo->facet_count++] =
-            (memo_facet){(uint32_t)f, {here->v[0], here->v[1], here->v[2]}, here->error_mm};
+            (memo_facet){(uint32_t)f, {here->v[0], here->v[1], here->v[2]}, here->error_mm, here->lost_mm3};
     }
 }
 
@@ -242,6 +244,7 @@ static int recall(simplify_region *r, uint64_t print, const cube_memo *memo)
         simplify_facet *here = &r->facet[left->owned];
         here->alive = 1;
         here->error_mm = left->error_mm;
+        here->lost_mm3 = left->lost_mm3;
         memcpy(here->v, left->v, sizeof here->v);
     }
     return 1;
@@ -260,6 +263,7 @@ static size_t put_back(const simplify_region *r, swarf_facet *mesh)
             continue;
         }
         facet->error_mm = here->error_mm;
+        facet->lost_mm3 = here->lost_mm3;
         for (size_t k = 0; k < 3; k++) facet->v[k] = r->global[here->v[k]];
     }
     return gone;
@@ -270,7 +274,7 @@ static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, 
     const size_t f = r->facet_count++;
     const swarf_facet *facet = &j->facets->facet[number];
     simplify_facet *here = &r->facet[f];
-    *here = (simplify_facet){.global = number, .error_mm = facet->error_mm, .alive = 1};
+    *here = (simplify_facet){.global = number, .error_mm = facet->error_mm, .lost_mm3 = facet->lost_mm3, .alive = 1};
     memcpy(here->normal, facet->normal, sizeof here->normal);
     for (size_t k = 0; k < 3; k++) {
         const uint32_t vertex = facet->v[k];
@@ -442,9 +446,8 @@ static void free_pass(job *j)
     j->owned = j->shared = NULL;
 }
 
-swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget,
-                                   const uint8_t *marks, swarf_facets_memo *memo, const swarf_progress *progress,
-                                   double from, double to)
+swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget, uint8_t *marks,
+                                   swarf_facets_memo *memo, const swarf_progress *progress, double from, double to)
 {
     if (!(error_mm > 0) || facets->facet_count == 0 || (budget && facets->facet_count <= budget)) return SWARF_OK;
     job j = {.facets = facets, .marks = marks};
@@ -481,7 +484,7 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
     free(j.cube);
     free(j.local);
     free(j.settled);
-    return status == SWARF_OK ? swarf_facets_compact(facets) : status;
+    return status == SWARF_OK ? swarf_facets_compact(facets, marks) : status;
 }
 
 void swarf_facets_free(swarf_facets *facets)
@@ -491,7 +494,7 @@ void swarf_facets_free(swarf_facets *facets)
     memset(facets, 0, sizeof *facets);
 }
 
-swarf_status swarf_facets_compact(swarf_facets *facets)
+swarf_status swarf_facets_compact(swarf_facets *facets, uint8_t *marks)
 {
     uint32_t *number = malloc((facets->vertex_count + 1) * sizeof *number);
     if (!number) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
@@ -502,6 +505,7 @@ swarf_status swarf_facets_compact(swarf_facets *facets)
     for (size_t i = 0; i < facets->vertex_count; i++) {
         if (number[i] == SWARF_NO_VERTEX) continue;
         memmove(facets->xyz + 3 * kept, facets->xyz + 3 * i, 3 * sizeof *facets->xyz);
+        if (marks) marks[kept] = marks[i];
         number[i] = (uint32_t)kept++;
     }
     facets->vertex_count = kept;

@@ -14,6 +14,7 @@ typedef struct simplify_facet {
     uint32_t next[3]; /* the next corner of the same vertex */
     uint32_t global;  /* its number in the whole mesh */
     float error_mm;
+    float lost_mm3;
     int16_t normal[3];
     uint8_t alive;
 } simplify_facet;

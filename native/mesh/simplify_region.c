@@ -104,10 +104,35 @@ static int keeps_topology(const simplify_region *r, const ring *around, int j, u
     return 1;
 }
 
+/* What the two facets that go when v is drawn onto ring vertex j had lost, shared out among those that stay; on an edge
+ * of the surface each to its own side. */
+static void share_lost(simplify_region *r, const ring *around, int j)
+{
+    const int n = around->count;
+    float lost[2] = {r->facet[around->facet[j]].lost_mm3, r->facet[around->facet[(j + n - 1) % n]].lost_mm3};
+    int on_left = n - 2;
+    for (int i = 1; i < n && around->crease >> j & 1; i++)
+        if (around->crease >> (j + i) % n & 1) on_left = i - 1;
+    const int on_right = n - 2 - on_left;
+    if (on_left == 0 || on_right == 0) lost[0] = lost[1] = lost[0] + lost[1];
+    for (int i = 1; i < n - 1; i++)
+        r->facet[around->facet[(j + i) % n]].lost_mm3 +=
+            i <= on_left ? lost[0] / (float)on_left : lost[1] / (float)on_right;
+}
+
+/* Volume between the old place of facet i and the new when v is drawn onto ring vertex j, outside of the new, mm3. */
+static float volume_lost(const ring *around, int j, int i)
+{
+    double lost = 0;
+    for (int k = 0; k < 3; k++) lost -= around->at[k][j] * around->normal[k][i];
+    return (float)(lost / 6);
+}
+
 static void draw(simplify_region *r, const ring *around, int j, uint32_t v, double error)
 {
     const int n = around->count;
     const uint32_t u = around->vertex[j];
+    share_lost(r, around, j);
     for (int i = 0; i < n; i++) {
         const uint32_t f = around->facet[i];
         simplify_facet *here = &r->facet[f];
@@ -120,6 +145,7 @@ static void draw(simplify_region *r, const ring *around, int j, uint32_t v, doub
         here->next[k] = r->head[u];
         r->head[u] = 4 * f + k;
         here->error_mm = (float)error;
+        here->lost_mm3 += volume_lost(around, j, i);
     }
     r->head[v] = SWARF_NO_VERTEX;
     for (int i = 0; i < n; i++) r->state[around->vertex[i]] |= SIMPLIFY_DIRTY;

@@ -54,18 +54,23 @@ static void check_mesh(const char *what, const swarf_mesh *mesh, double field_mm
     fflush(stdout);
 }
 
-enum { KINDS = 6 };
+enum { KINDS = 8 };
 
-/* Error (in voxels) of each kind, whether the surface is given and edges are split; how far flat triangles may be from
- * curved faces all over, in voxels, and those that the field alone tells from its edges. */
+/* Error (in voxels) of each kind, whether the surface is given, edges are split and the volume is kept; how far flat
+ * triangles may be from curved faces all over, in voxels, and those that the field alone tells from its edges. */
 static const struct kind {
     double error;
-    int exact, fine;
+    int exact, fine, keep_volume;
     double apart;
     const char *name;
-} kinds[KINDS] = {{0, 0, 0, 0.03, "field, whole"},          {0.1, 0, 0, 0.03, "field, error 0.1 voxel"},
-                  {0, 1, 0, 0.01, "exact, whole"},          {0.1, 1, 0, 0.015, "exact, error 0.1 voxel"},
-                  {0, 1, 1, 0.01, "exact and fine, whole"}, {0.1, 1, 1, 0.015, "exact and fine, error 0.1 voxel"}};
+} kinds[KINDS] = {{0, 0, 0, 0, 0.03, "field, whole"},
+                  {0.1, 0, 0, 0, 0.03, "field, error 0.1 voxel"},
+                  {0, 1, 0, 0, 0.01, "exact, whole"},
+                  {0.1, 1, 0, 0, 0.015, "exact, error 0.1 voxel"},
+                  {0, 1, 1, 0, 0.01, "exact and fine, whole"},
+                  {0.1, 1, 1, 0, 0.015, "exact and fine, error 0.1 voxel"},
+                  {0.1, 0, 0, 1, 0.03, "field, error 0.1 voxel, volume kept"},
+                  {0.1, 1, 0, 1, 0.015, "exact, error 0.1 voxel, volume kept"}};
 
 static void check_stock(const char *name, swarf_stock *stock, const swarf_surface *surface, double voxel)
 {
@@ -76,6 +81,7 @@ static void check_stock(const char *name, swarf_stock *stock, const swarf_surfac
         options.error_mm = kinds[k].error * voxel;
         options.surface = kinds[k].exact ? surface : NULL;
         options.fine = kinds[k].fine;
+        options.keep_volume = kinds[k].keep_volume;
         swarf_mesh *mesh = NULL;
         char what[128];
         snprintf(what, sizeof what, "%s, %s", name, kinds[k].name);

@@ -441,3 +441,22 @@ def test_fine_edges_where_they_are_asked_for(swarf_run, tmp_path):
             assert mesh.closed
             off[suffix, bool(fine)] = abs(mesh.volume - (20 * 8 * 6 - slot))
         assert off[suffix, True] < 0.5 * off[suffix, False], off
+
+
+def test_volume_is_kept_where_it_is_asked_for(swarf_run, tmp_path):
+    (tmp_path / "groove.nc").write_text("G21 G90 T1 M6\nG0 X-9 Y10 Z-5\nG1 X39 F100\nM2\n")
+    words = ("simulate", "groove.nc", "--stock", "box:0,0,-8,30,20,0", "--tool", "1=ball:d=10,l=20", "--voxel", "0.15")
+    volume = 30 * (20 * 8 - math.pi * 5 ** 2 / 2)
+    off = {}
+    for kept in ((), ("--keep-volume",)):
+        status, _, err = swarf_run(*words, *kept, "--output", "part.ply", "--output", "part.vdb")
+        assert status == 0, err
+        off["simulate", bool(kept)] = abs(swarf.Mesh.read(tmp_path / "part.ply").volume - volume)
+        for suffix in (".stl", ".obj"):  # streamed, and made as a whole
+            status, _, err = swarf_run("mesh", "part.vdb", *kept, "--output", "again" + suffix)
+            assert status == 0, err
+            off[suffix, bool(kept)] = abs(swarf.Mesh.read(tmp_path / ("again" + suffix)).volume - volume)
+    assert off["simulate", True] < 1e-5 * volume < 0.1 * off["simulate", False], off
+    assert off[".stl", True] < 0.7 * off[".stl", False] and off[".obj", True] < 0.7 * off[".obj", False], off
+    status, _, err = swarf_run("mesh", "part.ply", "--keep-volume", "--output", "again.ply")
+    assert status == 2 and "--keep-volume are for stocks" in err

@@ -317,6 +317,20 @@ def test_fine_edges():
     assert abs(fine.volume - volume) < 0.3 * abs(coarse.volume - volume)
 
 
+def test_volume_is_kept_where_it_is_asked_for(tmp_path):
+    """A ball's groove: flat triangles between points of it leave material in."""
+    stock, surface = cut_through(swarf.Stock.box((0, 0, -8), (30, 20, 0), 0.15), "ball:d=10,l=20", (-9, 10, -5),
+                                 (39, 10, -5))
+    volume = 30 * (20 * 8 - math.pi * 5 ** 2 / 2)
+    plain = swarf.Mesh.from_stock(stock, 0.015, surface=surface)
+    kept = swarf.Mesh.from_stock(stock, 0.015, surface=surface, keep_volume=True)
+    assert kept.closed and kept.contour.error_mm <= 0.015 * (1 + 1e-4)
+    assert abs(kept.volume - volume) < 1e-5 * volume < 0.1 * abs(plain.volume - volume)
+    made = swarf.Mesh.stream(stock, tmp_path / "kept.stl", 0.015, surface=surface, keep_volume=True)
+    assert made.triangles == kept.triangle_count
+    assert math.isclose(swarf.Mesh.read(tmp_path / "kept.stl").volume, kept.volume, rel_tol=1e-6)
+
+
 @pytest.mark.parametrize("wall, floor", [(16.6, -6.6), (16.6, -9), (17, -6.6), (17, -9), (16.5, -6.7)])
 def test_corners_where_faces_go_through_the_middle_of_voxels(wall, floor):
     """A slot of 10 mm through a block of voxels of 0.4 mm, at round numbers."""

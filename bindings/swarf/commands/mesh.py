@@ -30,6 +30,8 @@ def add(subparsers: Any) -> None:
                          help=f"leave vertices out up to this error (default: {MESH_ERROR_VOXELS:g} voxels; 0: none)")
     command.add_argument("--budget", metavar="N", type=int, default=0,
                          help="no more triangles than N, if the error allows")
+    command.add_argument("--keep-volume", action="store_true",
+                         help="shift vertices, by a fifth of the error at most, until the volume is that of the stock")
     command.add_argument("--output", metavar="FILE", action="append", default=[],
                          help=f"write the mesh: {' '.join(MESH_SUFFIXES)}, or .step, of facets (repeatable); one that "
                          "does not fit into memory only to .stl")
@@ -82,8 +84,9 @@ def parts_of(mesh: _native.Mesh, arguments: argparse.Namespace) -> list[_native.
 def read(arguments: argparse.Namespace, bar: Bar) -> tuple[Any, float]:
     """The mesh in the input, or the stock in it and what its mesh may be off."""
     if os.path.splitext(arguments.input)[1].lower() != ".vdb":
-        if arguments.error or arguments.budget:
-            raise ValueError(f"{arguments.input}: --error and --budget are for stocks (.vdb); a mesh is taken as it is")
+        if arguments.error or arguments.budget or arguments.keep_volume:
+            raise ValueError(f"{arguments.input}: --error, --budget and --keep-volume are for stocks (.vdb); a mesh is "
+                             "taken as it is")
         return _native.Mesh.read(arguments.input), 0.0
     stock = _native.Stock.read(arguments.input, progress=lambda fraction: bar("read", fraction))
     return stock, MESH_ERROR_VOXELS * stock.voxel if arguments.error is None else arguments.error
@@ -160,10 +163,12 @@ def run(arguments: argparse.Namespace) -> int:
         mesh, error = read(arguments, bar)
         if isinstance(mesh, _native.Stock) and is_streamed(arguments):
             for path in arguments.output:
-                made = _native.Mesh.stream(mesh, path, error, progress=lambda fraction: bar("mesh", fraction))
+                made = _native.Mesh.stream(mesh, path, error, keep_volume=arguments.keep_volume,
+                                           progress=lambda fraction: bar("mesh", fraction))
         else:
             if isinstance(mesh, _native.Stock):
                 mesh = _native.Mesh.from_stock(mesh, error, budget=arguments.budget,
+                                               keep_volume=arguments.keep_volume,
                                                progress=lambda fraction: bar("mesh", fraction))
             of_facets = write_parts(mesh, arguments, bar)
             made = mesh.contour

@@ -302,12 +302,13 @@ def export_analytic(data, stock_file, path, largest=False, progress=None):
 
 
 def export(data, stock_file, path, error_mm=None, budget=0, colour=None, tolerance_mm=0.05, allowance_mm=0.0,
-           largest=False, fine=False, progress=None):
+           largest=False, fine=False, keep_volume=False, progress=None):
     """Write the mesh of what is left of a JobData's stock, a .vdb file, on the exact surface -> number of triangles.
 
     error_mm: vertices are left out up to this (None: 0.1 voxels); budget: no more triangles, if the error allows;
     colour: "operation", "deviation" (green within tolerance_mm of the design with allowance_mm left on it) or
-    "thickness"; largest: the largest piece alone; fine: edges closer to each other than a voxel are followed.
+    "thickness"; largest: the largest piece alone; fine: edges closer to each other than a voxel are followed;
+    keep_volume: vertices are shifted until the volume is that of the stock.
     progress as simulate(). Any thread. JobError where nothing is left, or no mesh is that small; swarf.Error, OSError.
     """
     swarf = load()
@@ -315,7 +316,7 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, toleran
     share = functools.partial(shares.share, progress)
     job, left, surface = _exact(data, stock_file, share(0, 0.4))
     mesh = swarf.Mesh.from_stock(left, MESH_ERROR_VOXELS * left.voxel if error_mm is None else error_mm, budget=budget,
-                                 surface=surface, fine=fine, progress=share(0.4, 0.8))
+                                 surface=surface, fine=fine, keep_volume=keep_volume, progress=share(0.4, 0.8))
     if not mesh.triangle_count:
         raise JobError("nothing is left of the stock")
     if not mesh.contour.budget_met:

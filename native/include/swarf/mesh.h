@@ -31,6 +31,11 @@ typedef struct swarf_contour_options {
      *  a large part, several times as long where most of the surface is such edges. In bands the row of cells beside
      *  each plane between two stays as it is. */
     int fine;
+    /** 0 or 1. 1: vertices are shifted, by a fifth of the error at most (where that is 0 by a hundredth of a voxel), so
+     *  that the volume of the mesh becomes surface_mm3 of its report: flat triangles with their corners on a curved
+     *  surface have another. That fifth is kept for it, so there are more triangles. Corners of triangles that would
+     *  turn or cut others stay, and those along the planes between bands. */
+    int keep_volume;
 } swarf_contour_options;
 
 /** Error 0 (every vertex), no budget, no surface; all of its moves; not fine. */

@@ -188,7 +188,8 @@ def export_steps(obj, path, **options):
 def export(obj, path, progress=None, **options):
     """Write what is left of the stock into a file by its suffix -> number of triangles. options: error_mm, budget,
     colour ("operation", "deviation" or "thickness"), tolerance_mm and allowance_mm (of the deviation's colours),
-    largest (the largest piece alone), fine (edges closer to each other than a voxel are followed)."""
+    largest (the largest piece alone), fine (edges closer to each other than a voxel are followed),
+    keep_volume (vertices are shifted until the volume is that of the stock)."""
     made = steps.run(export_steps(obj, path, **options))
     count = made.run(progress)
     made.finish()

@@ -60,6 +60,11 @@ class ExportPanel(TaskPanel):
         self.fine = QtWidgets.QCheckBox(translate("Swarf", "follow edges closer than a voxel"))
         self.fine.setToolTip(translate("Swarf", "As those of threads and narrow grooves; takes longer"))
         layout.addRow(self.fine)
+        self.keep_volume = QtWidgets.QCheckBox(translate("Swarf", "keep the volume"))
+        self.keep_volume.setToolTip(translate(
+            "Swarf", "Flat triangles between points of a curved face change its volume: shift the points by a fifth of "
+            "the error at most, so that they do not"))
+        layout.addRow(self.keep_volume)
         self.estimate = QtWidgets.QLabel()
         self.estimate.setWordWrap(True)
         layout.addRow(self.estimate)
@@ -79,6 +84,7 @@ class ExportPanel(TaskPanel):
         self.error.setEnabled(mesh)
         self.largest.setEnabled(mesh)
         self.fine.setEnabled(mesh)
+        self.keep_volume.setEnabled(mesh)
         self.colour.setEnabled(self.suffix in model.MESH_SUFFIXES and self.suffix != ".stl")
         self.allowance.setEnabled(self.chosen_colour == "deviation")
         triangles, size = model.estimate(self.obj, self.suffix, self.error.value(), self.chosen_colour is not None)
@@ -114,7 +120,7 @@ class ExportPanel(TaskPanel):
             model.export_steps(self.obj, path, error_mm=self.error.value(), colour=self.chosen_colour,
                                tolerance_mm=settings.tolerance(),
                                allowance_mm=self.allowance.value(), largest=self.largest.isChecked(),
-                               fine=self.fine.isChecked()),
+                               fine=self.fine.isChecked(), keep_volume=self.keep_volume.isChecked()),
             self.on_read, self.form)
 
     def on_read(self, made, error):

@@ -367,6 +367,10 @@
             <translation>Spannmittel</translation>
         </message>
         <message>
+            <source>Flat triangles between points of a curved face change its volume: shift the points by a fifth of the error at most, so that they do not</source>
+            <translation>Ebene Dreiecke zwischen Punkten einer gekrümmten Fläche ändern deren Volumen: die Punkte um höchstens ein Fünftel des Fehlers verschieben, damit sie es nicht tun</translation>
+        </message>
+        <message>
             <source>Folder for the frames of the animation</source>
             <translation>Ordner für die Bilder der Animation</translation>
         </message>
@@ -921,6 +925,10 @@
         <message>
             <source>follow edges closer than a voxel</source>
             <translation>Kanten folgen, die näher als ein Voxel liegen</translation>
+        </message>
+        <message>
+            <source>keep the volume</source>
+            <translation>das Volumen erhalten</translation>
         </message>
         <message>
             <source>leave loose pieces out</source>

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Meshes that keep the volume: of bores, dimples and posts in closed form, within the error, their flat faces flat. */
+#include <math.h>
+#include <string.h>
+
+#include "cuts.h"
+#include "milled.h"
+#include "stocks.h"
+
+static const double pi = 3.14159265358979323846;
+
+typedef struct made {
+    swarf_mesh *mesh;
+    swarf_contour_report report;
+    double volume;
+} made;
+
+static made make(swarf_stock *stock, const swarf_surface *surface, double error, int keep_volume)
+{
+    swarf_contour_options options = swarf_contour_options_default();
+    options.error_mm = error;
+    options.surface = surface;
+    options.keep_volume = keep_volume;
+    made m = {0};
+    if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &m.mesh, &m.report))) return m;
+    const swarf_topology topology = swarf_mesh_topology(m.mesh);
+    CHECK(topology.closed && !topology.nonmanifold_edges && !topology.misoriented_edges && !topology.degenerate);
+    CHECK(m.report.intersections_left == 0);
+    if (m.report.triangles < 6000) CHECK(mesh_cuts(m.mesh) == 0);
+    CHECK(m.report.error_mm <= fmax(error, 0.01 * swarf_stock_voxel(stock)) * (1 + 1e-4));
+    m.volume = topology.volume_mm3;
+    return m;
+}
+
+/* Greatest distance of vertices near the top z = 0 from it. */
+static double off_top(const swarf_mesh *mesh)
+{
+    const swarf_triangles t = swarf_mesh_triangles(mesh);
+    double worst = 0;
+    for (size_t i = 0; i < t.vertex_count; i++) {
+        const double z = (double)t.xyz[3 * i + 2];
+        if (z > -0.1) worst = fmax(worst, fabs(z));
+    }
+    return worst;
+}
+
+static void check_bore(const char *cutter, double depth, double removed, double voxel)
+{
+    milled job = milled_begin(cutter, voxel);
+    swarf_surface *surface = NULL;
+    milled_line(&job, SWARF_MOVE_POSITION, 30, 20, 1, 1);
+    milled_line(&job, SWARF_MOVE_FEED, 30, 20, -depth, 2);
+    CHECK_OK(swarf_surface_create(job.first, job.program, &job.tool, 1, NULL, &surface));
+    milled_cut(&job);
+    const double volume = 60 * 40 * 10 - removed;
+    for (int exact = 0; exact < 2; exact++) {
+        const swarf_surface *from = exact ? surface : NULL;
+        const made full = make(job.stock, from, 0, 0), shifted = make(job.stock, from, 0, 1);
+        const made plain = make(job.stock, from, 0.1 * voxel, 0), kept = make(job.stock, from, 0.1 * voxel, 1);
+        /* by the field edges are off by more than that may be shifted */
+        const double part = exact ? 0.1 : 0.5, part_full = exact ? 0.01 : 0.85;
+        if (exact) CHECK_NEAR(kept.volume, volume, 1e-5 * volume);
+        CHECK(fabs(kept.volume - kept.report.surface_mm3) < part * fabs(plain.volume - plain.report.surface_mm3));
+        CHECK(kept.report.triangles < 2 * plain.report.triangles);
+        if (exact) CHECK(off_top(kept.mesh) < 1e-3 * voxel);
+        CHECK(full.report.triangles == shifted.report.triangles);
+        CHECK(fabs(shifted.volume - shifted.report.surface_mm3) <
+              part_full * fabs(full.volume - full.report.surface_mm3));
+        swarf_mesh_release(plain.mesh);
+        swarf_mesh_release(kept.mesh);
+        swarf_mesh_release(full.mesh);
+        swarf_mesh_release(shifted.mesh);
+    }
+    swarf_surface_release(surface);
+    milled_end(&job);
+}
+
+/* A cylinder, which bulges; the same bits for any number of threads. */
+static void check_post(void)
+{
+    const double base[3] = {0.03, 0.02, 0.01}, axis[3] = {0, 0, 12};
+    swarf_stock_options options = swarf_stock_options_default();
+    options.voxel_mm = 0.2;
+    swarf_stock *stock = NULL;
+    if (!CHECK_OK(swarf_stock_create_cylinder(base, axis, 5, &options, &stock))) return;
+    made first = {0};
+    for (int threads = 1; threads <= 3; threads++) {
+        CHECK_OK(swarf_threads_set(threads));
+        const made m = make(stock, NULL, 0.02, 1);
+        if (threads == 1) {
+            const made plain = make(stock, NULL, 0.02, 0);
+            CHECK(fabs(m.volume - m.report.surface_mm3) < 0.5 * fabs(plain.volume - plain.report.surface_mm3));
+            swarf_mesh_release(plain.mesh);
+            first = m;
+            continue;
+        }
+        const swarf_triangles a = swarf_mesh_triangles(first.mesh), b = swarf_mesh_triangles(m.mesh);
+        CHECK(a.vertex_count == b.vertex_count && memcmp(a.xyz, b.xyz, a.vertex_count * 12) == 0);
+        CHECK(a.triangle_count == b.triangle_count && memcmp(a.index, b.index, a.triangle_count * 12) == 0);
+        swarf_mesh_release(m.mesh);
+    }
+    swarf_mesh_release(first.mesh);
+    CHECK_OK(swarf_threads_set(0));
+    swarf_stock_destroy(stock);
+}
+
+/* Whatever was cut, and with a budget. */
+static void check_random(void)
+{
+    test_random random = test_random_begin(11);
+    for (int i = 0; i < 3; i++) {
+        swarf_surface *surface = NULL;
+        swarf_stock *stock = stock_random(&random, 0.12, 6, &surface);
+        for (int exact = 0; exact < 2; exact++) {
+            const made m = make(stock, exact ? surface : NULL, 0.012, 1);
+            swarf_mesh_release(m.mesh);
+        }
+        swarf_surface_release(surface);
+        swarf_stock_destroy(stock);
+    }
+}
+
+static void check_refusals(void)
+{
+    const swarf_box box = {{0, 0, 0}, {2, 2, 2}};
+    swarf_stock *stock = stock_block(&box, 0.2);
+    swarf_contour_options options = swarf_contour_options_default();
+    swarf_mesh *mesh = NULL;
+    options.keep_volume = 2;
+    CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, "keep_volume is 2");
+    CHECK_OK(swarf_stock_boolean(stock, stock, SWARF_DIFFERENCE));
+    options.keep_volume = 1;
+    swarf_contour_report report;
+    if (CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) {
+        CHECK(report.triangles == 0 && report.error_mm == 0);
+        swarf_mesh_release(mesh);
+    }
+    swarf_stock_destroy(stock);
+}
+
+int main(void)
+{
+    const double voxel = 0.3;
+    check_bore("flat:d=16,l=20", 6, pi * 64 * 6, voxel);
+    check_bore("ball:d=16,l=20", 4, pi * 16 * (24 - 4) / 3, voxel);
+    check_post();
+    check_random();
+    check_refusals();
+    return test_end();
+}
