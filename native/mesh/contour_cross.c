@@ -3,6 +3,8 @@
 #include "base/memory.h"
 #include "base/status.h"
 #include "mesh/contour.h"
+#include "mesh/contour_sharp.h"
+#include "stock/gradient.h"
 #include "stock/leaf.h"
 
 #include <math.h>
@@ -14,7 +16,7 @@
 static const double crossing_tolerance = 1e-5, noise = 1e-3;
 /* Where second differences of the field (in voxels) are less than this at both ends of an edge, the surface is flat:
  * linear crossings are right to an eighth of it, central differences to half of it (as an angle). */
-static const double flat_bend = 1e-3;
+static const float flat_bend = 1e-3f;
 /* An edge that meets the surface at a flatter angle than this (as a sine) is left to the bracketed search. */
 static const double least_slope = 0.1;
 
@@ -90,10 +92,11 @@ static const float *find_leaf(const contour *work, const int32_t corner[3], floa
     return leaf;
 }
 
-void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values[SWARF_HALO * SWARF_HALO * SWARF_HALO])
+/* With so many voxels below the block along each axis and above it. */
+static inline void fetch(const contour *work, const int32_t ijk[3], int below, int above, float *values)
 {
-    /* along an axis the neighbours below, itself and above give 1, 8 and 2 voxels */
-    static const int first[3] = {7, 0, 0}, count[3] = {1, 8, 2}, start[3] = {0, 1, 9};
+    const int first[3] = {SWARF_LEAF_DIM - below, 0, 0}, count[3] = {below, SWARF_LEAF_DIM, above},
+              start[3] = {0, below, below + SWARF_LEAF_DIM}, edge = below + SWARF_LEAF_DIM + above;
     for (int c = 0; c < 9; c++) {
         const int part[2] = {c / 3, c % 3};
         const float *leaf[3];
@@ -105,16 +108,26 @@ void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values
         }
         for (int x = 0; x < count[part[0]]; x++)
             for (int y = 0; y < count[part[1]]; y++) {
-                float *to = values + ((start[part[0]] + x) * SWARF_HALO + start[part[1]] + y) * SWARF_HALO;
+                float *to = values + ((start[part[0]] + x) * edge + start[part[1]] + y) * edge;
                 const int from = (first[part[0]] + x) * 64 + (first[part[1]] + y) * 8;
-                to[0] = leaf[0] ? leaf[0][from + 7] : tile[0];
+                for (int z = 0; z < below; z++) to[z] = leaf[0] ? leaf[0][from + first[0] + z] : tile[0];
                 if (leaf[1])
-                    memcpy(to + 1, leaf[1] + from, 8 * sizeof *to);
+                    memcpy(to + below, leaf[1] + from, SWARF_LEAF_DIM * sizeof *to);
                 else
-                    for (int z = 0; z < 8; z++) to[1 + z] = tile[1];
-                for (int z = 0; z < 2; z++) to[9 + z] = leaf[2] ? leaf[2][from + z] : tile[2];
+                    for (int z = 0; z < SWARF_LEAF_DIM; z++) to[below + z] = tile[1];
+                for (int z = 0; z < above; z++) to[start[2] + z] = leaf[2] ? leaf[2][from + z] : tile[2];
             }
     }
+}
+
+void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values[SWARF_HALO * SWARF_HALO * SWARF_HALO])
+{
+    fetch(work, ijk, 1, 2, values);
+}
+
+void swarf_contour_fetch_wide(const contour *work, const int32_t ijk[3], float *values)
+{
+    fetch(work, ijk, SWARF_WIDE_BELOW, SWARF_WIDE_HALO - SWARF_WIDE_BELOW - SWARF_LEAF_DIM, values);
 }
 
 static const int stride[3] = {SWARF_HALO * SWARF_HALO, SWARF_HALO, 1};
@@ -138,10 +151,10 @@ static void cross_field(const float *at, int axis, contour_crossing *out)
     out->piece = 0;
 }
 
-static int is_flat(const float *at, int axis, double voxel)
+/* Whether all second differences at both ends of an edge are less. */
+static int bends_less(const float *at, int axis, float most)
 {
     const float *next = at + stride[axis];
-    const float most = (float)(flat_bend * voxel);
     for (int k = 0; k < 3; k++)
         if (!(fabsf(at[stride[k]] - 2 * at[0] + at[-stride[k]]) < most &&
               fabsf(next[stride[k]] - 2 * next[0] + next[-stride[k]]) < most))
@@ -198,6 +211,9 @@ void swarf_contour_cross_exact(const swarf_surface_near *near, const double a[3]
 static swarf_status cross_edges(const contour *work, contour_block *block, const float *values, contour_near *near)
 {
     const swarf_tree_layout *layout = work->layout;
+    const float voxel = (float)layout->voxel;
+    contour_sharp sharp; /* set when it is needed */
+    int begun = 0;
     contour_crossing *next = block->crossings;
     for (int axis = 0; axis < 3; axis++)
         for (int x = 0; x < 8; x++)
@@ -205,14 +221,20 @@ static swarf_status cross_edges(const contour *work, contour_block *block, const
                 const int bit = __builtin_ctzll(word), at[3] = {x, bit >> 3, bit & 7};
                 const float *value = values + ((x + 1) * SWARF_HALO + at[1] + 1) * SWARF_HALO + at[2] + 1;
                 cross_field(value, axis, next);
-                if (is_flat(value, axis, layout->voxel)) {
+                if (bends_less(value, axis, flat_bend * voxel)) {
                     next->t = fminf(fmaxf(next->t, (float)SWARF_CONTOUR_MARGIN), 1 - (float)SWARF_CONTOUR_MARGIN);
                     next->move = SWARF_BY_FLAT_FIELD;
                     continue;
                 }
+                if (!work->surface) {
+                    if (bends_less(value, axis, swarf_edge_bend * voxel)) continue;
+                    if (!begun) swarf_contour_sharp_begin(&sharp, work, block);
+                    begun = 1;
+                    swarf_contour_cross_sharp(&sharp, at, axis, next);
+                    continue;
+                }
                 const swarf_surface_near *surface;
                 SWARF_TRY(swarf_contour_near_get(near, at, &surface));
-                if (!surface) continue;
                 double a[3];
                 for (int k = 0; k < 3; k++) a[k] = layout->origin[k] + (block->ijk[k] + at[k]) * layout->voxel;
                 swarf_contour_cross_exact(surface, a, layout->voxel, axis, *value < 0, next);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* The vertex of one cycle by the field alone: on a smooth face the point of the surface nearest to the middle of the
- * crossings, on edges and corners where the faces meet.
+ * crossings, on edges and corners where the faces meet. Beside them, where the crossings are of faces, the surface
+ * between voxels is these, not what values between the voxels' would be.
  *
  * Every crossing is a plane of a quadratic error function (Ju, Losasso, Schaefer, Warren 2002), solved about the middle
  * of the crossings with eigenvalues that carry nothing left out.
@@ -149,13 +150,29 @@ static int meet_inside(const contour_plane *planes, int count, const double abou
     return rank;
 }
 
+/* Onto the surface from the middle of the crossings: as the planes at these are as far above it as the middle is below
+ * where it bends, to half of the way between. */
+static void rise(const contour_polygon *polygon, double x[3])
+{
+    double away = 0, normal[3] = {0};
+    for (int i = 0; i < polygon->count; i++)
+        for (int k = 0; k < 3; k++) {
+            normal[k] += polygon->normal[i][k];
+            away += polygon->normal[i][k] * (polygon->point[i][k] - x[k]);
+        }
+    const double length = sqrt(dot(normal, normal));
+    if (length > 0)
+        for (int k = 0; k < 3; k++) x[k] += 0.5 * away / polygon->count * normal[k] / length;
+}
+
 int swarf_contour_vertex(const contour_polygon *polygon, double out[3])
 {
     double x[3], least_dot = 1;
     middle_of(polygon, x);
     for (int i = 0; i < polygon->count; i++)
         for (int j = 0; j < i; j++) least_dot = fmin(least_dot, dot(polygon->normal[i], polygon->normal[j]));
-    int rank = 1;
+    int rank = 1, by_faces = 0;
+    for (int i = 0; i < polygon->count; i++) by_faces |= polygon->move[i] == SWARF_BY_FACES;
     if (least_dot < same_face_cosine) {
         const double middle[3] = {x[0], x[1], x[2]};
         contour_plane planes[12];
@@ -164,8 +181,9 @@ int swarf_contour_vertex(const contour_polygon *polygon, double out[3])
             memcpy(planes[i].normal, polygon->normal[i], sizeof planes[i].normal);
         }
         rank = meet_inside(planes, polygon->count, middle, &polygon->bounds, x);
-    }
-    if (swarf_contour_clamp(&polygon->bounds, x) || rank < 2) project(polygon, x);
+    } else if (by_faces)
+        rise(polygon, x);
+    if ((swarf_contour_clamp(&polygon->bounds, x) || rank < 2) && !by_faces) project(polygon, x);
     memcpy(out, x, sizeof x);
     return rank;
 }

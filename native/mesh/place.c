@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 /* Vertices are left out up to this part of a voxel: as much as the mesh itself is off, and far fewer triangles. The
- * mesh of the field alone does not know edges to more than half a voxel, so that it may cost faces a little more. */
+ * mesh of the field alone does not know all edges as well, so that it may cost faces a little more. */
 static const double mesh_error = 0.01, field_error = 0.04;
 
 swarf_place_options swarf_place_options_default(void)

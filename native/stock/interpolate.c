@@ -2,24 +2,17 @@
 /* A distance field between its voxels: trilinear, less what second differences tell that this is off; and where they
  * tell of an edge, by the faces beside it.
  *
- *   corner   of the cell: its value, and its gradient by the differences that bend least (Harten, Engquist, Osher,
- *            Chakravarthy 1987), so that they do not reach over the edge
+ *   corner   of the cell: its value, and its gradient from one side of the edge
  *   face     corners of about one gradient: a plane
  *   value    max over faces j of min over those that are above j where j is seen (Ovchinnikov 2002): what any faces
  *            make that meet in edges, be they ridges, grooves or both */
 #include "stock/interpolate.h"
 
+#include "stock/gradient.h"
 #include "stock/leaf.h"
 
 #include <math.h>
 
-/* In voxels: second differences from which on the field is taken to have an edge; less than that of a ball of ten
- * voxels, where the planes beside each corner are off by a fortieth. */
-static const float edge_bend = 0.1f;
-/* A distance has a gradient of length 1; where its square is farther from that its differences reach over an edge. */
-static const float gradient_slack = 0.1f;
-/* The same of corners that lie on planes. */
-static const float flat_bend = 0.005f;
 /* Planes that make of all corners what they are, but for this, are all there is. */
 static const float least_misfit = 0.02f;
 /* Faces that do not tell of the corners to this do not tell of the field between them: there it is of things that are
@@ -105,30 +98,6 @@ static void look_smooth(cell *c)
     c->halfway = sum - 0.5f * less;
 }
 
-/* A second difference one voxel on, whose last value may not be known: then it is not held against the others. */
-static float bend_beyond(const cell *c, float near, float middle, float far)
-{
-    return fabsf(far) < c->limit || !(fabsf(middle) < c->limit) ? near - 2 * middle + far : 0.5f * flat_bend;
-}
-
-/* The gradient at a corner along one axis by the differences that bend least; how much they do. */
-static float slope(const cell *c, const float *at, int step, float *bend)
-{
-    const float ahead = at[step] - at[0], back = at[0] - at[-step], middle = ahead - back,
-                first = bend_beyond(c, at[0], at[step], at[2 * step]),
-                last = bend_beyond(c, at[0], at[-step], at[-2 * step]);
-    if (fabsf(middle) <= 2 * fminf(fabsf(first), fabsf(last)) + flat_bend) {
-        *bend = fmaxf(*bend, fabsf(middle));
-        return 0.5f * (ahead + back);
-    }
-    if (fabsf(first) < fabsf(last)) {
-        *bend = fmaxf(*bend, fabsf(first));
-        return ahead - 0.5f * first;
-    }
-    *bend = fmaxf(*bend, fabsf(last));
-    return back + 0.5f * last;
-}
-
 static float dot(const float a[3], const float b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -147,7 +116,8 @@ static void find_gradients(cell *c)
     for (int i = 0; i < CORNERS; i++) {
         const float *at = corner_of(c, i);
         c->gradient_bend[i] = 0;
-        for (int k = 0; k < 3; k++) c->gradient[i][k] = slope(c, at, c->stride[k], &c->gradient_bend[i]);
+        for (int k = 0; k < 3; k++)
+            c->gradient[i][k] = swarf_field_slope(at, c->stride[k], c->limit, 1, &c->gradient_bend[i]);
         c->steepness[i] = dot(c->gradient[i], c->gradient[i]);
     }
 }
@@ -299,11 +269,11 @@ static float look_sharp(cell *c)
     lattice of_flat, of_any, *l = &of_flat;
     float at[CORNERS] = {0};
     find_gradients(c);
-    find_faces(c, flat_bend, 2 * flat_bend, &flat);
+    find_faces(c, swarf_flat_bend, 2 * swarf_flat_bend, &flat);
     find_order(c, &flat, &of_flat);
     float off = misfit(c, &of_flat);
     if (off > least_misfit) { /* not of planes alone */
-        find_faces(c, edge_bend, gradient_slack, &any);
+        find_faces(c, swarf_edge_bend, swarf_gradient_slack, &any);
         find_order(c, &any, &of_any);
         const float other = misfit(c, &of_any);
         if (other < off) {
@@ -326,7 +296,8 @@ static float look_beyond(cell *c)
         if (fabsf(c->value[i]) < fabsf(c->value[nearest])) nearest = i;
     float value = c->smooth = c->value[nearest];
     for (int k = 0; k < 3; k++)
-        value += slope(c, corner_of(c, nearest), c->stride[k], &bend) * (c->t[k] - (float)(nearest >> (2 - k) & 1));
+        value += swarf_field_slope(corner_of(c, nearest), c->stride[k], c->limit, 1, &bend) *
+                 (c->t[k] - (float)(nearest >> (2 - k) & 1));
     return keep_near(c, value);
 }
 
@@ -337,5 +308,5 @@ float swarf_field_interpolate(const float *low, const int stride[2], const doubl
     const int known = look_near(&c);
     if (known < CORNERS) return known ? look_beyond(&c) : c.value[0];
     look_smooth(&c);
-    return c.bend < edge_bend ? c.smooth : look_sharp(&c);
+    return c.bend < swarf_edge_bend ? c.smooth : look_sharp(&c);
 }

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Files between Swarf and plain OpenVDB, both ways: what another program reads of ours, and what we take of its. */
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetFilter.h>
+#include <openvdb/tools/LevelSetPlatonic.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <random>
 #include <string>
 
 #include <unistd.h>
@@ -112,6 +115,74 @@ void check_refusals()
     refuse("a hole", grid);
 }
 
+using shape = double (*)(const openvdb::Vec3d &);
+
+constexpr double edge = 6.06, radius = 4;
+
+double ball(const openvdb::Vec3d &p)
+{
+    return p.length() - radius;
+}
+
+double cube(const openvdb::Vec3d &p)
+{
+    return std::fmax(std::fabs(p[0]), std::fmax(std::fabs(p[1]), std::fabs(p[2]))) - edge / 2;
+}
+
+openvdb::FloatGrid::Ptr make(shape distance)
+{
+    return distance == ball
+               ? openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(static_cast<float>(radius), openvdb::Vec3f(0),
+                                                                          static_cast<float>(voxel))
+               : openvdb::tools::createLevelSetCube<openvdb::FloatGrid>(static_cast<float>(edge), openvdb::Vec3f(0),
+                                                                        static_cast<float>(voxel));
+}
+
+/* A mesh of theirs: vertices are off by no more than this, in the mean, in voxels. */
+void check_mesh(const char *what, const openvdb::FloatGrid::Ptr &grid, shape distance, double most)
+{
+    write(at("sphere.vdb"), grid);
+    swarf_stock *stock = nullptr;
+    swarf_mesh *mesh = nullptr;
+    const swarf_contour_options options = swarf_contour_options_default();
+    if (!CHECK_OK(swarf_stock_read(at("sphere.vdb").c_str(), nullptr, &stock))) return;
+    if (CHECK_OK(swarf_mesh_contour(stock, &options, nullptr, &mesh, nullptr))) {
+        const swarf_triangles t = swarf_mesh_triangles(mesh);
+        double sum = 0;
+        for (size_t i = 0; i < t.vertex_count; i++)
+            sum += std::fabs(distance({t.xyz[3 * i], t.xyz[3 * i + 1], t.xyz[3 * i + 2]})) / voxel;
+        const double mean = sum / static_cast<double>(t.vertex_count);
+        std::printf("%s: vertices off by %.5f voxels in the mean\n", what, mean);
+        CHECK(swarf_mesh_topology(mesh).closed && mean < most);
+    }
+    swarf_mesh_release(mesh);
+    swarf_stock_destroy(stock);
+}
+
+/* Distances as they are, with noise, smoothed over edges, and what is no distance. */
+void check_meshes()
+{
+    check_mesh("ball", make(ball), ball, 0.01);
+    check_mesh("cube", make(cube), cube, 1e-4);
+    for (const shape distance : {ball, cube})
+        for (const double part : {0.01, 0.1}) {
+            const auto grid = make(distance);
+            std::mt19937 engine(7);
+            for (auto value = grid->beginValueOn(); value; ++value) {
+                const double noise = static_cast<double>(engine()) / 4294967296.0 - 0.5; /* the same everywhere */
+                value.setValue(static_cast<float>(*value + part * std::sqrt(12) * voxel * noise));
+            }
+            check_mesh(distance == ball ? "ball with noise" : "cube with noise", grid, distance,
+                       part < 0.05 ? 0.011 : 0.07);
+        }
+    auto grid = make(cube);
+    openvdb::tools::LevelSetFilter<openvdb::FloatGrid>(*grid).gaussian(1);
+    check_mesh("smoothed cube", grid, cube, 0.15);
+    grid = make(cube);
+    for (auto value = grid->beginValueOn(); value; ++value) value.setValue(0.8f * *value);
+    check_mesh("cube of another slope", grid, cube, 0.004);
+}
+
 } // namespace
 
 int main()
@@ -122,6 +193,7 @@ int main()
     openvdb::initialize();
     check_theirs();
     check_ours();
+    check_meshes();
     check_refusals();
     for (const char *file : {"ours.vdb", "sphere.vdb", "bare.vdb"}) std::remove(at(file).c_str());
     rmdir(name);
