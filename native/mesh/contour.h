@@ -236,12 +236,12 @@ static inline const contour_crossing *swarf_contour_crossing(const contour *work
     if (!(word >> bit & 1)) return NULL;
     return block->crossings + block->edge_rank[axis][voxel[0] & 7] + swarf_contour_below(word, bit);
 }
-/** What the exact surface can be in the eight parts of a block, and in their own eight parts, gathered when first asked
- *  for: the smaller the box, the fewer moves a point has to look at. */
+/** What the exact surface can be in the eight parts of a block, and in their own eight parts, collected for all and
+ *  narrowed when first asked for: the smaller the box, the fewer moves a point has to look at. */
 typedef struct contour_near {
     const contour *work;
     const contour_block *block;
-    swarf_surface_near *part[8], *small[64];
+    swarf_surface_near *all, *part[8], *small[64];
     swarf_surface_near *wide;
 } contour_near;
 

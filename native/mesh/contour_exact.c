@@ -251,7 +251,10 @@ int swarf_contour_vertex_exact(const contour_polygon *polygon, const swarf_surfa
     int one_piece = 1;
     middle_of(polygon, c.middle);
     for (int i = 0; i < polygon->count; i++) {
-        for (int j = 0; j < i; j++) least_dot = fmin(least_dot, dot(polygon->normal[i], polygon->normal[j]));
+        for (int j = 0; j < i; j++) {
+            const double likeness = dot(polygon->normal[i], polygon->normal[j]);
+            least_dot = likeness < least_dot ? likeness : least_dot;
+        }
         one_piece &= polygon->move[i] == polygon->move[0] && polygon->piece[i] == polygon->piece[0];
     }
     if (least_dot < (one_piece ? one_face_cosine : same_face_cosine)) {

@@ -29,6 +29,16 @@ static int part_of(const int at[3], int edge)
     return (at[0] / edge * along + at[1] / edge) * along + at[2] / edge;
 }
 
+/* What may be in the block, once. */
+static swarf_status collect(contour_near *near)
+{
+    static const int corner[3] = {0, 0, 0};
+    if (near->all) return SWARF_OK;
+    const swarf_box box = box_of(near, corner, SWARF_LEAF_DIM);
+    SWARF_TRY(swarf_surface_near_create(near->work->surface, &near->all));
+    return swarf_surface_collect(near->all, near->work->moves, &box);
+}
+
 swarf_status swarf_contour_near_get(contour_near *near, const int at[3], const swarf_surface_near **out)
 {
     *out = NULL;
@@ -36,9 +46,10 @@ swarf_status swarf_contour_near_get(contour_near *near, const int at[3], const s
     if (!work->surface) return SWARF_OK;
     swarf_surface_near **part = &near->part[part_of(at, PART)];
     if (!*part) {
+        SWARF_TRY(collect(near));
         const swarf_box box = box_of(near, at, PART);
         SWARF_TRY(swarf_surface_near_create(work->surface, part));
-        SWARF_TRY(swarf_surface_gather(*part, work->moves, &box));
+        SWARF_TRY(swarf_surface_narrow(*part, near->all, &box));
     }
     *out = *part;
     return SWARF_OK;
@@ -73,6 +84,7 @@ swarf_status swarf_contour_near_wide(contour_near *near, const int at[3], const 
 
 void swarf_contour_near_free(contour_near *near)
 {
+    swarf_surface_near_destroy(near->all);
     swarf_surface_near_destroy(near->wide);
     for (int i = 0; i < 8; i++) swarf_surface_near_destroy(near->part[i]);
     for (int i = 0; i < 64; i++) swarf_surface_near_destroy(near->small[i]);

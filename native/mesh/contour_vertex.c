@@ -35,7 +35,8 @@ int swarf_contour_clamp(const contour_bounds *bounds, double x[3])
 {
     int moved = 0;
     for (int k = 0; k < 3; k++) {
-        const double kept = fmin(fmax(x[k], bounds->lo[k]), bounds->hi[k]);
+        const double above = x[k] > bounds->lo[k] ? x[k] : bounds->lo[k]; /* fmax() and fmin() are calls */
+        const double kept = above < bounds->hi[k] ? above : bounds->hi[k];
         moved |= kept != x[k];
         x[k] = kept;
     }
@@ -83,8 +84,9 @@ static void move_inside(const contour_bounds *bounds, const double edge[3], doub
         const double slope = edge[k];
         if (fabs(slope) < 1e-9) continue;
         const double first = (bounds->lo[k] - x[k]) / slope, last = (bounds->hi[k] - x[k]) / slope;
-        lo = fmax(lo, fmin(first, last));
-        hi = fmin(hi, fmax(first, last));
+        const double from = first < last ? first : last, to = first < last ? last : first;
+        lo = from > lo ? from : lo;
+        hi = to < hi ? to : hi;
     }
     if (lo > hi) return;
     const double along = fmin(fmax(0, lo), hi);

@@ -8,7 +8,7 @@
  *
  * Where traces leave the very same surface the first of the program has made it, whatever box was gathered.
  *
- *   traces: of the box that was gathered; boxes within it that are narrowed from it look at the same ones
+ *   traces: of the box that was gathered or collected; boxes within it that are narrowed from it look at the same ones
  *   seen: what a point goes through, a cache line and a half each */
 #include "surface/surface.h"
 
@@ -33,6 +33,9 @@ struct swarf_surface_near {
     swarf_surface *surface;
     swarf_trace *traces;
     size_t trace_count, trace_room;
+    uint32_t *numbers; /* of collected traces, among the surface's parts */
+    size_t number_room;
+    int collected;                /* nothing is seen yet */
     const swarf_trace *looked_at; /* own traces, or those of the larger box */
     struct seen *seen;
     size_t count, room;
@@ -61,6 +64,7 @@ void swarf_surface_near_destroy(swarf_surface_near *near)
     swarf_surface_near_destroy(near->before);
     swarf_surface_release(near->surface);
     free(near->traces);
+    free(near->numbers);
     free(near->seen);
     free(near);
 }
@@ -116,6 +120,19 @@ static swarf_status keep_trace(struct gathering *g)
     return SWARF_OK;
 }
 
+/* The trace of a part of the surface, kept when it is seen or only collected. */
+static swarf_status take_part(struct gathering *g, size_t part)
+{
+    swarf_surface_near *near = g->near;
+    SWARF_TRY(make_room(near));
+    SWARF_TRY(swarf_surface_trace(near->surface, part, &near->traces[near->trace_count]));
+    if (!near->collected) return keep_trace(g);
+    SWARF_TRY(
+        swarf_array_reserve((void **)&near->numbers, &near->number_room, near->trace_count + 1, sizeof *near->numbers));
+    near->numbers[near->trace_count++] = (uint32_t)part;
+    return SWARF_OK;
+}
+
 static swarf_status gather_level(struct gathering *g, int level, size_t first, size_t end)
 {
     const swarf_surface *surface = g->near->surface;
@@ -124,15 +141,26 @@ static swarf_status gather_level(struct gathering *g, int level, size_t first, s
     if (end > surface->level_count[level]) end = surface->level_count[level];
     for (size_t i = first; i < end && i * span < g->limit; i++) {
         if (!overlaps(&surface->level[level][i], g->where)) continue;
-        if (level > 0) {
-            SWARF_TRY(gather_level(g, level - 1, i * SURFACE_FAN, (i + 1) * SURFACE_FAN));
-            continue;
-        }
-        SWARF_TRY(make_room(g->near));
-        SWARF_TRY(swarf_surface_trace(surface, i, &g->near->traces[g->near->trace_count]));
-        SWARF_TRY(keep_trace(g));
+        SWARF_TRY(level > 0 ? gather_level(g, level - 1, i * SURFACE_FAN, (i + 1) * SURFACE_FAN) : take_part(g, i));
     }
     return SWARF_OK;
+}
+
+/* All that the first `moves` moves have in the box. */
+static swarf_status gather_moves(struct gathering *g, size_t moves)
+{
+    const swarf_surface *surface = g->near->surface;
+    size_t lo = 0, hi = surface->part_count; /* first part of a move that does not count */
+    while (lo < hi) {
+        const size_t middle = (lo + hi) / 2;
+        if (surface->parts[middle].move < moves)
+            lo = middle + 1;
+        else
+            hi = middle;
+    }
+    g->limit = lo;
+    const int top = surface->levels - 1;
+    return gather_level(g, top, 0, surface->level_count[top]);
 }
 
 /* The same for a part of a move. */
@@ -160,6 +188,9 @@ static int nearer(const void *a, const void *b)
     return x->trace < y->trace ? -1 : x->trace > y->trace;
 }
 
+/* Up to so many are sorted here: qsort() sets up more than there is to sort. */
+enum { MANY = 32 };
+
 static void sort_seen(const struct gathering *g)
 {
     swarf_surface_near *near = g->near;
@@ -167,7 +198,16 @@ static void sort_seen(const struct gathering *g)
     for (size_t i = 0; i < near->count; i++)
         if (near->seen[i].raw <= g->ceiling + 2 * g->reach) near->seen[kept++] = near->seen[i];
     near->count = kept;
-    if (kept > 1) qsort(near->seen, kept, sizeof *near->seen, nearer);
+    if (kept > MANY) {
+        qsort(near->seen, kept, sizeof *near->seen, nearer);
+        return;
+    }
+    for (size_t i = 1; i < kept; i++) {
+        const struct seen own = near->seen[i];
+        size_t to = i;
+        for (; to > 0 && nearer(&own, &near->seen[to - 1]) < 0; to--) near->seen[to] = near->seen[to - 1];
+        near->seen[to] = own;
+    }
 }
 
 /* The middle of the box and from there to its corners. */
@@ -227,25 +267,16 @@ swarf_status swarf_surface_gather_part(swarf_surface_near *near, size_t moves, d
 {
     SWARF_REQUIRE(near && where, "surface: NULL");
     near->count = near->trace_count = 0;
+    near->collected = 0;
     const swarf_surface *surface = near->surface;
     struct gathering g = {.near = near, .where = where, .ceiling = INFINITY};
     SWARF_TRY(begin_box(&g));
-    size_t lo = 0, hi = surface->part_count; /* first part of a move that does not count */
-    while (lo < hi) {
-        const size_t middle = (lo + hi) / 2;
-        if (surface->parts[middle].move < moves)
-            lo = middle + 1;
-        else
-            hi = middle;
-    }
-    g.limit = lo;
-    const int top = surface->levels - 1;
     swarf_status status = SWARF_OK;
     if (near->before) {
         const swarf_box back = turn_back(surface, where);
         status = swarf_surface_gather(near->before, surface->before_moves, &back);
     }
-    if (status == SWARF_OK) status = gather_level(&g, top, 0, surface->level_count[top]);
+    if (status == SWARF_OK) status = gather_moves(&g, moves);
     if (status == SWARF_OK && part > 0 && g.limit < surface->part_count && surface->parts[g.limit].move == moves)
         status = gather_part(&g, moves, part);
     if (status == SWARF_OK)
@@ -255,9 +286,37 @@ swarf_status swarf_surface_gather_part(swarf_surface_near *near, size_t moves, d
     return status;
 }
 
+swarf_status swarf_surface_collect(swarf_surface_near *near, size_t moves, const swarf_box *where)
+{
+    near->count = near->trace_count = 0;
+    near->collected = 1;
+    if (near->before) {
+        const swarf_box back = turn_back(near->surface, where);
+        SWARF_TRY(swarf_surface_collect(near->before, near->surface->before_moves, &back));
+    }
+    struct gathering g = {.near = near, .where = where};
+    const swarf_status status = gather_moves(&g, moves);
+    near->looked_at = near->traces;
+    return status;
+}
+
+/* What of another box there may be in this one. */
+static swarf_status look_again(struct gathering *g, const swarf_surface_near *wider)
+{
+    if (!wider->collected) {
+        for (size_t i = 0; i < wider->count; i++) SWARF_TRY(look_at(g, wider->seen[i].trace));
+        return SWARF_OK;
+    }
+    const swarf_surface_box *boxes = wider->surface->level[0];
+    for (size_t i = 0; i < wider->trace_count; i++)
+        if (overlaps(&boxes[wider->numbers[i]], g->where)) SWARF_TRY(look_at(g, (uint32_t)i));
+    return SWARF_OK;
+}
+
 swarf_status swarf_surface_narrow(swarf_surface_near *near, const swarf_surface_near *wider, const swarf_box *where)
 {
     near->count = 0;
+    near->collected = 0;
     near->looked_at = wider->looked_at;
     struct gathering g = {.near = near, .where = where, .ceiling = INFINITY};
     SWARF_TRY(begin_box(&g));
@@ -266,7 +325,7 @@ swarf_status swarf_surface_narrow(swarf_surface_near *near, const swarf_surface_
         const swarf_box back = turn_back(near->surface, where);
         status = swarf_surface_narrow(near->before, wider->before, &back);
     }
-    for (size_t i = 0; status == SWARF_OK && i < wider->count; i++) status = look_at(&g, wider->seen[i].trace);
+    if (status == SWARF_OK) status = look_again(&g, wider);
     if (status == SWARF_OK)
         sort_seen(&g);
     else
@@ -302,12 +361,12 @@ void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3
         if (is_beyond(seen, way, bound)) continue;
         const swarf_trace *trace = &near->looked_at[seen->trace];
         const int comes_first = seen->trace < maker;
-        const double most = comes_first ? fmin(bound, -first) : beaten;
+        const double most = !comes_first ? beaten : bound < -first ? bound : -first;
         swarf_touch touch;
         swarf_trace_look(trace, point, most, &touch);
         if (touch.value >= most) continue;
         const int is_nearer = touch.value < least - as_near;
-        least = fmin(least, touch.value);
+        least = touch.value < least ? touch.value : least; /* fmin() is a call */
         if (!is_nearer && !comes_first) continue;
         maker = seen->trace;
         found = (swarf_surface_point){.value = -least,

@@ -61,8 +61,11 @@ const swarf_body *swarf_surface_body(const swarf_surface *surface, size_t move);
 /** The first shape as a point sees it: value, normal, piece; not where there is a set-up before. */
 void swarf_surface_first(const swarf_surface *surface, const double point[3], swarf_surface_point *out);
 
-/** The same as swarf_surface_gather() of a box within the one that `wider` was gathered or narrowed for, from what that
- *  holds; `wider` must stay as it is. */
+/** Only collect what may be gathered of boxes within `where`: nothing is seen from there before it is narrowed. */
+swarf_status swarf_surface_collect(swarf_surface_near *near, size_t moves, const swarf_box *where);
+
+/** The same as swarf_surface_gather() of a box within the one that `wider` was collected, gathered or narrowed for,
+ * from what that holds; `wider` must stay as it is. */
 swarf_status swarf_surface_narrow(swarf_surface_near *near, const swarf_surface_near *wider, const swarf_box *where);
 
 #endif
