@@ -22,6 +22,9 @@ enum { PASSES = sizeof passes / sizeof *passes };
 enum { MEMO_PASSES = 3 };
 /* Cubes that a table is made for; more are made larger. */
 static const double most_cubes = 1 << 22;
+/* Parts of the facets that are sorted at once, each with counts of its own in every cube: more take memory, fewer leave
+ * threads idle. */
+enum { PARTS = 16 };
 /* With a budget the error grows by this factor until the budget is met: the mesh ends within it of the least error. */
 static const double error_step = 2;
 enum { ERROR_STEPS = 8 };
@@ -38,7 +41,9 @@ typedef struct job {
     uint32_t *local;     /* of every vertex, the number in its cube */
     uint8_t *settled;    /* vertices that cannot go at this limit unless something near them does */
     uint8_t *zone;       /* of every vertex, in the last pass at a limit; else NULL */
-    size_t *owned_begin; /* cubes + 1 */
+    size_t parts;        /* of the facets, in their order */
+    int put;             /* facets are put, not counted */
+    size_t *owned_begin; /* by cube, then by part */
     size_t *shared_begin;
     uint32_t *owned;          /* facets by cube */
     uint32_t *shared;         /* facets that reach out of a cube */
@@ -89,28 +94,26 @@ static swarf_status find_zones(job *j)
     return SWARF_OK;
 }
 
-/* Facets by cube, counted and then put; a facet over several cubes is shared by each of them. */
-static void sort_facets(job *j, int put)
+/* A part of the facets by cube, counted and then put; a facet over several cubes is shared by each of them. */
+static swarf_status sort_part(void *context, size_t part)
 {
-    for (size_t f = 0; f < j->facets->facet_count; f++) {
+    job *j = context;
+    const size_t count = j->facets->facet_count;
+    for (size_t f = part * count / j->parts; f < (part + 1) * count / j->parts; f++) {
         const uint32_t *v = j->facets->facet[f].v;
         if (j->zone && !(j->zone[v[0]] | j->zone[v[1]] | j->zone[v[2]])) continue;
         const size_t c[3] = {j->cube[v[0]], j->cube[v[1]], j->cube[v[2]]};
-        if (c[0] == c[1] && c[1] == c[2]) {
-            if (put)
-                j->owned[j->owned_begin[c[0]]++] = (uint32_t)f;
-            else
-                j->owned_begin[c[0]]++;
-            continue;
-        }
+        const int whole = c[0] == c[1] && c[1] == c[2];
+        size_t *begin = whole ? j->owned_begin : j->shared_begin;
+        uint32_t *list = whole ? j->owned : j->shared;
         for (int k = 0; k < 3; k++) {
             if ((k > 0 && c[k] == c[0]) || (k > 1 && c[k] == c[1])) continue;
-            if (put)
-                j->shared[j->shared_begin[c[k]]++] = (uint32_t)f;
-            else
-                j->shared_begin[c[k]]++;
+            size_t *at = &begin[c[k] * j->parts + part];
+            if (j->put) list[*at] = (uint32_t)f;
+            ++*at;
         }
     }
+    return SWARF_OK;
 }
 
 static size_t sum_up(size_t *begin, size_t count)
@@ -179,25 +182,36 @@ static uint64_t mix(uint64_t print, uint64_t word)
     return print ^ print >> 29;
 }
 
-static uint64_t mix_all(uint64_t print, const void *bytes, size_t size)
+/* A hash in four strands, as each step waits for the one before in its own. */
+typedef struct strands {
+    uint64_t at[4];
+} strands;
+
+static void mix_four(strands *p, const uint64_t words[4])
 {
-    uint64_t word = 0;
+    for (int k = 0; k < 4; k++) p->at[k] = mix(p->at[k], words[k]);
+}
+
+static void mix_all(strands *p, const void *bytes, size_t size)
+{
+    uint64_t words[4] = {0};
     size_t at = 0;
-    for (; at + sizeof word <= size; at += sizeof word) {
-        memcpy(&word, (const char *)bytes + at, sizeof word);
-        print = mix(print, word);
+    for (; at + sizeof words <= size; at += sizeof words) {
+        memcpy(words, (const char *)bytes + at, sizeof words);
+        mix_four(p, words);
     }
-    word = 0;
-    memcpy(&word, (const char *)bytes + at, size - at);
-    return mix(print, word);
+    memset(words, 0, sizeof words);
+    memcpy(words, (const char *)bytes + at, size - at);
+    mix_four(p, words);
 }
 
 /* The hash of all that a region is simplified by. */
 static uint64_t print_of(const simplify_region *r)
 {
-    uint64_t print = mix_all(0, r->xyz, 3 * r->vertex_count * sizeof *r->xyz);
-    print = mix_all(print, r->state, r->vertex_count);
-    print = mix_all(print, r->need, r->vertex_count * sizeof *r->need);
+    strands p = {{1, 2, 3, 4}};
+    mix_all(&p, r->xyz, 3 * r->vertex_count * sizeof *r->xyz);
+    mix_all(&p, r->state, r->vertex_count);
+    mix_all(&p, r->need, r->vertex_count * sizeof *r->need);
     for (size_t f = 0; f < r->facet_count; f++) {
         const simplify_facet *here = &r->facet[f];
         uint64_t words[4] = {here->v[0] | (uint64_t)here->v[1] << 32, here->v[2]};
@@ -207,9 +221,9 @@ static uint64_t print_of(const simplify_region *r)
         words[1] |= (uint64_t)error << 32;
         words[2] = lost;
         memcpy(&words[3], here->normal, sizeof here->normal);
-        for (int k = 0; k < 4; k++) print = mix(print, words[k]);
+        mix_four(&p, words);
     }
-    return print;
+    return mix(mix(mix(p.at[0], p.at[1]), p.at[2]), p.at[3]);
 }
 
 /* Without memory for it there is nothing to recall. */
@@ -334,8 +348,9 @@ static swarf_status make_room(simplify_region *r, size_t facets)
 
 static swarf_status simplify_facets(job *j, size_t cube, simplify_region *r)
 {
-    const size_t owned_first = cube ? j->owned_begin[cube - 1] : 0, owned = j->owned_begin[cube] - owned_first;
-    const size_t shared_first = cube ? j->shared_begin[cube - 1] : 0, shared = j->shared_begin[cube] - shared_first;
+    const size_t first = cube * j->parts, last = first + j->parts - 1; /* the begins have become the ends */
+    const size_t owned_first = cube ? j->owned_begin[first - 1] : 0, owned = j->owned_begin[last] - owned_first;
+    const size_t shared_first = cube ? j->shared_begin[first - 1] : 0, shared = j->shared_begin[last] - shared_first;
     if (owned < 4) return SWARF_OK; /* nothing to remove */
     SWARF_TRY(make_room(r, owned + shared));
     for (size_t i = 0; i < owned; i++) add_facet(j, r, cube, j->owned[owned_first + i], 0);
@@ -368,15 +383,16 @@ static void drop_gone(swarf_facets *facets)
 
 static void find_bounds(job *j)
 {
-    const swarf_facets *facets = j->facets;
-    for (size_t k = 0; k < 3; k++) {
-        float least = INFINITY, most = -INFINITY;
-        for (size_t i = k; i < 3 * facets->vertex_count; i += 3) {
-            least = facets->xyz[i] < least ? facets->xyz[i] : least;
-            most = facets->xyz[i] > most ? facets->xyz[i] : most;
+    float least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < j->facets->vertex_count; i++)
+        for (size_t k = 0; k < 3; k++) {
+            const float at = j->facets->xyz[3 * i + k];
+            least[k] = at < least[k] ? at : least[k];
+            most[k] = at > most[k] ? at : most[k];
         }
-        j->least[k] = (double)least;
-        j->most[k] = (double)most;
+    for (int k = 0; k < 3; k++) {
+        j->least[k] = (double)least[k];
+        j->most[k] = (double)most[k];
     }
 }
 
@@ -407,6 +423,24 @@ static swarf_status lay_out_memo(const job *j, size_t cubes)
     return SWARF_OK;
 }
 
+static swarf_status sort_facets(job *j, size_t cubes)
+{
+    j->parts = PARTS * cubes < j->facets->facet_count ? PARTS : 1;
+    const size_t begins = cubes * j->parts;
+    j->owned_begin = calloc(begins, sizeof *j->owned_begin);
+    j->shared_begin = calloc(begins, sizeof *j->shared_begin);
+    if (!j->owned_begin || !j->shared_begin)
+        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    j->put = 0;
+    SWARF_TRY(swarf_parallel_for(j->parts, sort_part, j, NULL, 0, 1));
+    const size_t owned = sum_up(j->owned_begin, begins), shared = sum_up(j->shared_begin, begins);
+    j->owned = malloc((owned + 1) * sizeof *j->owned);
+    j->shared = malloc((shared + 1) * sizeof *j->shared);
+    if (!j->owned || !j->shared) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    j->put = 1;
+    return swarf_parallel_for(j->parts, sort_part, j, NULL, 0, 1);
+}
+
 static swarf_status run_pass(job *j, const struct pass *pass, double voxel, const swarf_progress *progress, double from,
                              double to, size_t *gone)
 {
@@ -414,18 +448,10 @@ static swarf_status run_pass(job *j, const struct pass *pass, double voxel, cons
     const size_t cubes = j->count[0] * j->count[1] * j->count[2];
     SWARF_TRY(lay_out_memo(j, cubes));
     if (pass == &passes[PASSES - 1]) SWARF_TRY(find_zones(j));
-    j->owned_begin = calloc(cubes, sizeof *j->owned_begin);
-    j->shared_begin = calloc(cubes, sizeof *j->shared_begin);
-    j->gone = calloc(cubes, sizeof *j->gone);
-    if (!j->owned_begin || !j->shared_begin || !j->gone)
-        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     SWARF_TRY(swarf_parallel_for((j->facets->vertex_count + CHUNK - 1) / CHUNK, find_cubes, j, NULL, 0, 1));
-    sort_facets(j, 0);
-    const size_t owned = sum_up(j->owned_begin, cubes), shared = sum_up(j->shared_begin, cubes);
-    j->owned = malloc((owned + 1) * sizeof *j->owned);
-    j->shared = malloc((shared + 1) * sizeof *j->shared);
-    if (!j->owned || !j->shared) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
-    sort_facets(j, 1); /* the begins become the ends */
+    SWARF_TRY(sort_facets(j, cubes));
+    j->gone = calloc(cubes, sizeof *j->gone);
+    if (!j->gone) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     SWARF_TRY(swarf_parallel_for(cubes, simplify_cube, j, progress, from, to));
     *gone = 0;
     for (size_t i = 0; i < cubes; i++) *gone += j->gone[i];
