@@ -464,23 +464,37 @@ static swarf_status check_closed(const swarf_mesh *mesh)
                       topology.boundary_edges);
 }
 
+typedef struct finishing {
+    contour *work;
+    swarf_facets *facets;
+    swarf_mesh *mesh;
+} finishing;
+
+/* The mesh from its facets; the blocks, which take as long to free, meanwhile. */
+static swarf_status finish_one(void *context, size_t index)
+{
+    finishing *f = context;
+    if (index == 0) return to_mesh(f->facets, &f->mesh);
+    swarf_contour_clear(f->work);
+    return SWARF_OK;
+}
+
 static swarf_status make(contour *work, const swarf_contour_options *options, const swarf_progress *progress,
                          swarf_mesh **out, swarf_contour_report *report)
 {
     swarf_facets facets = {0};
-    swarf_mesh *mesh = NULL;
+    finishing f = {work, &facets, NULL};
     swarf_status status = swarf_contour_blocks(work);
     if (status == SWARF_OK) status = swarf_contour_settle(work, options, progress, &facets, report);
-    if (status == SWARF_OK) status = to_mesh(&facets, &mesh);
+    if (status == SWARF_OK) status = swarf_parallel_for(2, finish_one, &f, NULL, 0, 1);
     swarf_facets_free(&facets);
-    SWARF_TRY(status);
-    status = check_closed(mesh);
+    if (status == SWARF_OK) status = check_closed(f.mesh);
     if (status == SWARF_OK) status = swarf_progress_report(progress, 1);
     if (status != SWARF_OK) {
-        swarf_mesh_release(mesh);
+        swarf_mesh_release(f.mesh);
         return status;
     }
-    *out = mesh;
+    *out = f.mesh;
     return SWARF_OK;
 }
 
