@@ -300,6 +300,9 @@ typedef struct contour_plane {
  */
 int swarf_contour_meet(const contour_plane *planes, int count, const double about[3], double least,
                        const contour_bounds *bounds, double out[3]);
+/** Onto one smooth face from the middle of its crossings, all but: as the planes at these are as far above it as the
+ *  middle is below where it bends, to half of the way between. */
+void swarf_contour_rise(const contour_polygon *polygon, double x[3]);
 /** Move into the bounds; 1 when it was not. */
 int swarf_contour_clamp(const contour_bounds *bounds, double x[3]);
 

@@ -162,6 +162,21 @@ static int bends_less(const float *at, int axis, float most)
     return 1;
 }
 
+/* The same where the field bends: the parabola through both ends that bends as the less bent of them does, which an
+ * edge nearby changes the less. */
+static void cross_bent(const float *at, int axis, contour_crossing *crossing)
+{
+    const int step = stride[axis];
+    const double low = at[0], slope = at[step] - low;
+    const double first = at[step] - 2 * low + at[-step], last = at[2 * step] - 2.0 * at[step] + low;
+    if (first * last <= 0) return;
+    const double half = 0.5 * (fabs(first) < fabs(last) ? first : last);
+    const double middle = slope - half; /* low + middle t + half t^2 */
+    const double root = copysign(sqrt(fmax(middle * middle - 4 * half * low, 0)), slope); /* the slope where it is 0 */
+    const double t = middle * root > 0 ? -2 * low / (middle + root) : 0.5 * (root - middle) / half;
+    if (t >= 0 && t <= 1) crossing->t = (float)t;
+}
+
 /* What makes the surface at a voxel, as seen from a little further along the edge. Where faces that go through the
  * middle of voxels, as round numbers make them do, meet in a line of voxels, these alone see no face but the line. */
 static void look_beside(const swarf_surface_near *near, const double a[3], double voxel, int axis, double t,
@@ -226,6 +241,7 @@ static swarf_status cross_edges(const contour *work, contour_block *block, const
                     next->move = SWARF_BY_FLAT_FIELD;
                     continue;
                 }
+                if (bends_less(value, axis, swarf_face_bend * voxel)) cross_bent(value, axis, next);
                 if (!work->surface) {
                     if (bends_less(value, axis, swarf_edge_bend * voxel)) continue;
                     if (!begun) swarf_contour_sharp_begin(&sharp, work, block);

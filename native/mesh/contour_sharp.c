@@ -17,8 +17,6 @@
 static const float same_value = 0.02f;
 /* Cosine of the angle within which gradients are of one face, 15 degrees. */
 static const float same_face_cosine = 0.966f;
-/* In voxels: faces bend less, those of a ball of four voxels. */
-static const float most_bend = 0.26f;
 /* Planes may be off by this part of a voxel beyond an end of a grid edge that the signs say is met. */
 static const float beyond_end = 0.1f;
 
@@ -70,7 +68,7 @@ static const contour_sight *look(contour_sharp *s, const int at[3])
         sight->gradient[k] = scale * swarf_field_slope(value, stride[k], s->limit, s->voxel, &bend);
     const float off = fabsf(dot(sight->gradient, sight->gradient) - 1);
     bend *= scale;
-    sight->bend = bend < most_bend && off < swarf_gradient_slack ? bend : INFINITY;
+    sight->bend = bend < swarf_face_bend && off < swarf_gradient_slack ? bend : INFINITY;
     s->looked[place] = 1;
     return sight;
 }

@@ -152,9 +152,7 @@ static int meet_inside(const contour_plane *planes, int count, const double abou
     return rank;
 }
 
-/* Onto the surface from the middle of the crossings: as the planes at these are as far above it as the middle is below
- * where it bends, to half of the way between. */
-static void rise(const contour_polygon *polygon, double x[3])
+void swarf_contour_rise(const contour_polygon *polygon, double x[3])
 {
     double away = 0, normal[3] = {0};
     for (int i = 0; i < polygon->count; i++)
@@ -183,9 +181,9 @@ int swarf_contour_vertex(const contour_polygon *polygon, double out[3])
             memcpy(planes[i].normal, polygon->normal[i], sizeof planes[i].normal);
         }
         rank = meet_inside(planes, polygon->count, middle, &polygon->bounds, x);
-    } else if (by_faces)
-        rise(polygon, x);
-    if ((swarf_contour_clamp(&polygon->bounds, x) || rank < 2) && !by_faces) project(polygon, x);
+    } else
+        swarf_contour_rise(polygon, x);
+    if (swarf_contour_clamp(&polygon->bounds, x) && !by_faces) project(polygon, x);
     memcpy(out, x, sizeof x);
     return rank;
 }

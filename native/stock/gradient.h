@@ -14,6 +14,8 @@ static const float swarf_flat_bend = 0.005f;
 /** In voxels: second differences from which on the field is taken to have an edge; less than that of a ball of ten
  *  voxels, where the planes beside each corner are off by a fortieth. */
 static const float swarf_edge_bend = 0.1f;
+/** In voxels: faces bend less, those of a ball of four voxels. */
+static const float swarf_face_bend = 0.26f;
 /** A distance has a gradient of length 1; where its square is farther from that its differences reach over an edge. */
 static const float swarf_gradient_slack = 0.1f;
 

@@ -65,15 +65,20 @@ typedef struct swarf_contour_report {
 
 /** From a stock by dual contouring: a closed, oriented 2-manifold with edges. Which voxels are material decides how it
  *  hangs together; the surface, where it is given, decides where its vertices lie: on the true faces and edges within a
- *  hundredth of a voxel. The field alone tells faces to about as much; edges where the faces beside them meet, half of
- *  them within a hundredth and nearly all within a tenth of a voxel, but within half of one where a third face is
- * nearer than three voxels, and where the field is no distance. It is used where the surface does not have the stock's
- * signs. Walls and gaps thinner than a voxel have no voxel centre in places, and are not there then; how much material
- * that is the report tells, about. Wedges, roots of threads and tips of points narrower than a voxel end up to a voxel
- * early, and of crests closer to each other than a voxel the valleys may be lost; with `fine` most of that is there
- * where a voxel's centre is near. `report` may be NULL. An empty stock gives an empty mesh. SWARF_ERROR_GEOMETRY:
- * material reaches the border of the level set, which a file of another program may do. The result does not depend on
- * the number of threads. */
+ *  hundredth of a voxel.
+ *
+ *  The field alone tells faces to about as much, round ones of four voxels and more; edges where the faces beside them
+ *  meet, half of them within a hundredth and nearly all within a tenth of a voxel, but within half of one where a third
+ *  face is nearer than three voxels, and where the field is no distance. It is used where the surface does not have the
+ *  stock's signs. In a field with noise of a tenth of a voxel and more vertices are off by as much as that.
+ *
+ *  Walls and gaps thinner than a voxel have no voxel centre in places, and are not there then; how much material that
+ *  is the report tells, about. Wedges, roots of threads and tips of points narrower than a voxel end up to a voxel
+ *  early, and of crests closer to each other than a voxel the valleys may be lost; with `fine` most of that is there
+ *  where a voxel's centre is near.
+ *
+ *  `report` may be NULL. An empty stock gives an empty mesh. The result does not depend on the number of threads.
+ *  SWARF_ERROR_GEOMETRY: material reaches the border of the level set, which a file of another program may do. */
 SWARF_API swarf_status swarf_mesh_contour(swarf_stock *stock, const swarf_contour_options *options,
                                           const swarf_progress *progress, swarf_mesh **out,
                                           swarf_contour_report *report);
