@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Facets sorted along Morton's curve, LEAF of them to a leaf of a complete binary tree of boxes:
+/* Facets sorted along Morton's curve, and a tree of boxes over them, four to a node:
  *
- *   level 0: leaves; node i of level l + 1 is over nodes 2 i and 2 i + 1 of level l.
+ *   level 0: node i has the boxes of facets 4 i .. 4 i + 3 of that order;
+ *   level l + 1: node i has the boxes of nodes 4 i .. 4 i + 3 of level l.
  *
  * The tree is gone through against itself, a part of it by each thread: pairs of nodes whose boxes meet, the first not
- * after the second. Of two leaves each pair of facets whose boxes meet is decided in whole numbers. */
+ * after the second, a box of the one against the four of the other at once. Each pair of facets whose boxes meet is
+ * decided in whole numbers. */
 #include "mesh/intersect.h"
 
 #include "base/memory.h"
@@ -16,8 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Facets of a leaf; of the nodes that are one thread's part the level; facets that are prepared together. */
-enum { LEAF = 4, LEVELS = 32, PART = 8, CHUNK = 4096 };
+/* Boxes of a node; of nodes that are one thread's part the level; nodes, and facets, that are prepared together. */
+enum { WIDE = 4, LEVELS = 16, PART = 4, CHUNK = 4096 };
 
 typedef struct extent {
     int32_t lo[3], hi[3];
@@ -35,11 +37,23 @@ typedef struct key {
 
 /* A facet, all that pairs are decided by. */
 typedef struct sorted {
-    extent box;
     int32_t p[3][3];
     uint32_t v[3], facet;
-    int fresh;
 } sorted;
+
+/* One number of each box of a node. */
+typedef int32_t row __attribute__((vector_size(4 * WIDE)));
+
+/* Boxes that are missing meet none. */
+typedef struct node {
+    row lo[3], hi[3];
+    uint32_t fresh; /* a bit each: the box has facets that are */
+} node;
+
+typedef struct level {
+    node *nodes;
+    size_t count;
+} level;
 
 typedef struct tree {
     const swarf_facets *facets;
@@ -47,10 +61,10 @@ typedef struct tree {
     double step;
     key *keys; /* the facets in order, until they are there: */
     sorted *order;
-    size_t level_first[LEVELS], level_count[LEVELS];
+    node *nodes; /* of all levels */
+    level level[LEVELS];
     int levels;
-    extent *boxes;
-    uint8_t *any_fresh; /* of the boxes */
+    int filled; /* levels that have their boxes */
     found *parts;
 } tree;
 
@@ -100,22 +114,13 @@ static extent extent_of(int32_t p[3][3])
     return e;
 }
 
-static int apart(const extent *a, const extent *b)
-{
-    for (int c = 0; c < 3; c++)
-        if (a->hi[c] < b->lo[c] || b->hi[c] < a->lo[c]) return 1;
-    return 0;
-}
-
-/* Every third bit of 21. */
+/* Every third bit of 16. */
 static uint64_t spread(uint64_t x)
 {
-    x &= 0x1fffff;
-    x = (x | x << 32) & 0x1f00000000ffff;
-    x = (x | x << 16) & 0x1f0000ff0000ff;
-    x = (x | x << 8) & 0x100f00f00f00f00f;
-    x = (x | x << 4) & 0x10c30c30c30c30c3;
-    return (x | x << 2) & 0x1249249249249249;
+    x = (x | x << 16) & 0xff0000ff;
+    x = (x | x << 8) & 0xf00f00f00f;
+    x = (x | x << 4) & 0xc30c30c30c3;
+    return (x | x << 2) & 0x249249249249;
 }
 
 /* By 16 bits at a time, stable. */
@@ -128,7 +133,7 @@ static swarf_status sort_keys(key **keys, size_t count)
         free(begin);
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
     }
-    for (int shift = 0; shift < 64; shift += 16) {
+    for (int shift = 0; shift < 48; shift += 16) {
         memset(begin, 0, 65537 * sizeof *begin);
         for (size_t i = 0; i < count; i++) begin[(from[i].code >> shift & 0xffff) + 1]++;
         for (size_t i = 0; i < 65536; i++) begin[i + 1] += begin[i];
@@ -152,36 +157,80 @@ static swarf_status make_keys(void *context, size_t index)
         const extent e = extent_of(p);
         t->keys[f] = (key){.facet = (uint32_t)f};
         for (int c = 0; c < 3; c++) /* coordinates lie in -2^24 .. 2^24 */
-            t->keys[f].code |= spread((uint64_t)(((int64_t)e.lo[c] + e.hi[c]) / 2 + (1 << 24)) >> 4) << c;
+            t->keys[f].code |= spread((uint64_t)(((int64_t)e.lo[c] + e.hi[c]) / 2 + (1 << 24)) >> 9 & 0xffff) << c;
     }
     return SWARF_OK;
 }
 
-static void widen(extent *to, const extent *by)
+/* The box of all boxes of a node. */
+static extent cover(const node *n)
 {
+    extent e;
     for (int c = 0; c < 3; c++) {
-        to->lo[c] = by->lo[c] < to->lo[c] ? by->lo[c] : to->lo[c];
-        to->hi[c] = by->hi[c] > to->hi[c] ? by->hi[c] : to->hi[c];
+        e.lo[c] = n->lo[c][0];
+        e.hi[c] = n->hi[c][0];
+        for (int i = 1; i < WIDE; i++) {
+            e.lo[c] = n->lo[c][i] < e.lo[c] ? n->lo[c][i] : e.lo[c];
+            e.hi[c] = n->hi[c][i] > e.hi[c] ? n->hi[c][i] : e.hi[c];
+        }
     }
+    return e;
 }
 
-/* The boxes of facets and leaves. */
-static swarf_status make_leaves(void *context, size_t index)
+static extent box_of(const node *n, int i)
+{
+    return (extent){{n->lo[0][i], n->lo[1][i], n->lo[2][i]}, {n->hi[0][i], n->hi[1][i], n->hi[2][i]}};
+}
+
+static void set_box(node *n, int i, const extent *box, int fresh)
+{
+    for (int c = 0; c < 3; c++) {
+        n->lo[c][i] = box->lo[c];
+        n->hi[c][i] = box->hi[c];
+    }
+    n->fresh |= (uint32_t)fresh << i;
+}
+
+/* A bit per box of a node that meets a box. */
+static uint32_t meeting(const node *n, const extent *box)
+{
+    row apart = {0};
+    for (int c = 0; c < 3; c++) apart |= (n->hi[c] < box->lo[c]) | (box->hi[c] < n->lo[c]);
+    const row met = ~apart & (row){1, 2, 4, 8};
+    return (uint32_t)(met[0] | met[1] | met[2] | met[3]);
+}
+
+/* A facet put in its place; its box. */
+static extent put_facet(const tree *t, size_t at)
+{
+    sorted *own = &t->order[at];
+    own->facet = t->keys[at].facet;
+    memcpy(own->v, t->facets->facet[own->facet].v, sizeof own->v);
+    corners_of(t, own->facet, own->p);
+    return extent_of(own->p);
+}
+
+/* Nodes of the level to be filled, from the facets or from the level below. */
+static swarf_status fill_nodes(void *context, size_t index)
 {
     const tree *t = context;
-    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < t->facets->facet_count; i++) {
-        sorted *own = &t->order[i];
-        own->facet = t->keys[i].facet;
-        memcpy(own->v, t->facets->facet[own->facet].v, sizeof own->v);
-        corners_of(t, own->facet, own->p);
-        own->box = extent_of(own->p);
-        own->fresh = !t->fresh || t->fresh[own->facet];
-        if (i % LEAF == 0) {
-            t->boxes[i / LEAF] = own->box;
-            t->any_fresh[i / LEAF] = (uint8_t)own->fresh;
-        } else {
-            widen(&t->boxes[i / LEAF], &own->box);
-            t->any_fresh[i / LEAF] |= (uint8_t)own->fresh;
+    const level *own = &t->level[t->filled], *below = own - 1;
+    const size_t boxes = t->filled ? below->count : t->facets->facet_count;
+    for (size_t i = index * CHUNK; i < (index + 1) * CHUNK && i < own->count; i++) {
+        node *n = &own->nodes[i];
+        const extent none = {{INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN, INT32_MIN}};
+        n->fresh = 0;
+        for (int k = 0; k < WIDE; k++) {
+            const size_t at = WIDE * i + (size_t)k;
+            if (at >= boxes) {
+                set_box(n, k, &none, 0);
+            } else if (t->filled) {
+                const extent box = cover(&below->nodes[at]);
+                set_box(n, k, &box, below->nodes[at].fresh != 0);
+            } else {
+                const extent box = put_facet(t, at);
+                set_box(n, k, &box, !t->fresh || t->fresh[t->order[at].facet]);
+            }
         }
     }
     return SWARF_OK;
@@ -189,36 +238,29 @@ static swarf_status make_leaves(void *context, size_t index)
 
 static swarf_status build(tree *t)
 {
-    const size_t count = t->facets->facet_count, chunks = (count + CHUNK - 1) / CHUNK;
+    const size_t count = t->facets->facet_count;
     t->keys = malloc((count + 1) * sizeof *t->keys);
     if (!t->keys) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
-    SWARF_TRY(swarf_parallel_for(chunks, make_keys, t, NULL, 0, 1));
+    SWARF_TRY(swarf_parallel_for((count + CHUNK - 1) / CHUNK, make_keys, t, NULL, 0, 1));
     SWARF_TRY(sort_keys(&t->keys, count));
     size_t total = 0;
-    for (size_t nodes = (count + LEAF - 1) / LEAF;; nodes = (nodes + 1) / 2) {
-        t->level_first[t->levels] = total;
-        t->level_count[t->levels++] = nodes;
+    for (size_t nodes = count; nodes > 1 || t->levels == 0;) {
+        nodes = (nodes + WIDE - 1) / WIDE;
+        t->level[t->levels++].count = nodes;
         total += nodes;
-        if (nodes <= 1) break;
     }
-    t->boxes = malloc((total + 1) * sizeof *t->boxes);
+    t->nodes = malloc(total * sizeof *t->nodes);
     t->order = malloc((count + 1) * sizeof *t->order);
-    t->any_fresh = malloc(total + 1);
-    if (!t->boxes || !t->order || !t->any_fresh)
+    if (!t->nodes || !t->order)
         return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for checking %zu triangles", count);
-    SWARF_TRY(swarf_parallel_for(chunks, make_leaves, t, NULL, 0, 1));
+    for (node *next = t->nodes; t->filled < t->levels; t->filled++) {
+        level *own = &t->level[t->filled];
+        own->nodes = next;
+        next += own->count;
+        SWARF_TRY(swarf_parallel_for((own->count + CHUNK - 1) / CHUNK, fill_nodes, t, NULL, 0, 1));
+    }
     free(t->keys);
     t->keys = NULL;
-    for (int level = 1; level < t->levels; level++)
-        for (size_t i = 0; i < t->level_count[level]; i++) {
-            const size_t child = t->level_first[level - 1] + 2 * i;
-            const size_t own = t->level_first[level] + i;
-            t->boxes[own] = t->boxes[child];
-            t->any_fresh[own] = t->any_fresh[child];
-            if (2 * i + 1 == t->level_count[level - 1]) continue;
-            widen(&t->boxes[own], &t->boxes[child + 1]);
-            t->any_fresh[own] |= t->any_fresh[child + 1];
-        }
     return SWARF_OK;
 }
 
@@ -229,69 +271,56 @@ static swarf_status put_pair(found *out, const sorted *a, const sorted *b)
     return SWARF_OK;
 }
 
-static swarf_status look_at_leaf(const tree *t, size_t own, size_t leaf, found *out)
+/* Facets whose boxes meet; each without area as a pair with itself. */
+static swarf_status look_at_facets(const tree *t, size_t first, size_t second, found *out)
 {
-    const size_t count = t->facets->facet_count;
-    const sorted *end = t->order + ((own + 1) * LEAF < count ? (own + 1) * LEAF : count);
-    const sorted *other_end = t->order + ((leaf + 1) * LEAF < count ? (leaf + 1) * LEAF : count);
-    for (const sorted *a = t->order + own * LEAF; a < end; a++) {
-        if (own != leaf && apart(&a->box, &t->boxes[leaf])) continue;
-        if (own == leaf && !swarf_triangle_has_area(a->p)) SWARF_TRY(put_pair(out, a, a));
-        for (const sorted *b = own == leaf ? a + 1 : t->order + leaf * LEAF; b < other_end; b++) {
-            if (apart(&a->box, &b->box) || !(a->fresh | b->fresh)) continue;
-            if (swarf_triangles_meet(a->p, a->v, b->p, b->v)) SWARF_TRY(put_pair(out, a, b));
+    const sorted *a = &t->order[first], *b = &t->order[second];
+    if (first == second) return swarf_triangle_has_area(a->p) ? SWARF_OK : put_pair(out, a, a);
+    return swarf_triangles_meet(a->p, a->v, b->p, b->v) ? put_pair(out, a, b) : SWARF_OK;
+}
+
+/* What is below two nodes of a level, the first not after the second. */
+static swarf_status look_at_nodes(const tree *t, int at, size_t first, size_t second, found *out)
+{
+    const node *own = &t->level[at].nodes[first], *other = &t->level[at].nodes[second];
+    for (int i = 0; i < WIDE; i++) {
+        const extent box = box_of(own, i);
+        uint32_t met = meeting(other, &box);
+        if (!(own->fresh >> i & 1)) met &= other->fresh;
+        if (first == second) met &= ~0U << i;
+        for (; met; met &= met - 1) {
+            const size_t a = WIDE * first + (size_t)i, b = WIDE * second + (size_t)__builtin_ctz(met);
+            SWARF_TRY(at ? look_at_nodes(t, at - 1, a, b, out) : look_at_facets(t, a, b, out));
         }
     }
     return SWARF_OK;
 }
 
-typedef struct node {
-    int level;
-    size_t index;
-} node;
-
-static size_t place_of(const tree *t, node n)
+static int part_level(const tree *t)
 {
-    return t->level_first[n.level] + n.index;
+    return t->levels - 1 < PART ? t->levels - 1 : PART;
 }
 
-/* The leaves under node `index` of level PART, against all that do not come before them. */
-static swarf_status look_for(void *context, size_t index)
+/* A part, of which all is in a box, against what is below a node and not before it. */
+static swarf_status look_below(const tree *t, size_t part, const extent *box, int at, size_t index, found *out)
+{
+    if (at == part_level(t)) return index < part ? SWARF_OK : look_at_nodes(t, at, part, index, out);
+    for (uint32_t met = meeting(&t->level[at].nodes[index], box); met; met &= met - 1)
+        SWARF_TRY(look_below(t, part, box, at - 1, WIDE * index + (size_t)__builtin_ctz(met), out));
+    return SWARF_OK;
+}
+
+static swarf_status look_for(void *context, size_t part)
 {
     const tree *t = context;
-    found *out = &t->parts[index];
-    struct {
-        node a, b;
-    } stack[4 * LEVELS];
-    int depth = 0;
-    stack[depth].a = (node){t->levels - 1 < PART ? t->levels - 1 : PART, index};
-    stack[depth++].b = (node){t->levels - 1, 0};
-    while (depth) {
-        depth--;
-        const node a = stack[depth].a, b = stack[depth].b;
-        const size_t at_a = place_of(t, a), at_b = place_of(t, b);
-        if ((b.index + 1) << b.level <= a.index << a.level || !(t->any_fresh[at_a] | t->any_fresh[at_b]) ||
-            apart(&t->boxes[at_a], &t->boxes[at_b]))
-            continue;
-        if (a.level == 0 && b.level == 0) {
-            SWARF_TRY(look_at_leaf(t, a.index, b.index, out));
-            continue;
-        }
-        const int first = a.level >= b.level;
-        const node parted = first ? a : b;
-        for (size_t i = 2 * parted.index; i < 2 * parted.index + 2 && i < t->level_count[parted.level - 1]; i++) {
-            const node child = {parted.level - 1, i};
-            stack[depth].a = first ? child : a;
-            stack[depth++].b = first ? b : child;
-        }
-    }
-    return SWARF_OK;
+    const extent box = cover(&t->level[part_level(t)].nodes[part]);
+    return look_below(t, part, &box, t->levels - 1, 0, &t->parts[part]);
 }
 
 static swarf_status look_everywhere(tree *t, const swarf_progress *progress, double from, double to,
                                     swarf_facet_pair **pairs, size_t *count)
 {
-    const size_t parts = t->level_count[t->levels - 1 < PART ? t->levels - 1 : PART];
+    const size_t parts = t->level[part_level(t)].count;
     t->parts = calloc(parts, sizeof *t->parts);
     if (!t->parts) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     swarf_status status = swarf_parallel_for(parts, look_for, t, progress, from, to);
@@ -326,8 +355,7 @@ swarf_status swarf_facets_intersect(const swarf_facets *facets, const uint8_t *f
     swarf_status status = build(&t);
     if (status == SWARF_OK) status = look_everywhere(&t, progress, from, to, pairs, count);
     free(t.keys);
-    free(t.boxes);
-    free(t.any_fresh);
+    free(t.nodes);
     free(t.order);
     free(t.parts);
     return status;

@@ -127,13 +127,14 @@ int swarf_triangles_meet(const int32_t pa[3][3], const uint32_t a[3], const int3
     /* most of what is asked for: neighbours, and others that lie near each other */
     if (shared < 2 && (on_one_side(pa, pb, shared ? in_b[0] : -1) || on_one_side(pb, pa, shared ? in_a[0] : -1)))
         return 0;
+    if (shared == 2 && orient(pa[0], pa[1], pa[2], pb[3 - in_b[0] - in_b[1]]) != 0) return 0;
     const int axis_a = flat_axis(pa), axis_b = flat_axis(pb);
     if (axis_a < 0 || axis_b < 0) return 0;
     if (shared == 3) return 1;
     if (shared == 2) { /* folded flat upon each other */
         const int32_t *p = pa[in_a[0]], *q = pa[in_a[1]];
         const int32_t *other_a = pa[3 - in_a[0] - in_a[1]], *other_b = pb[3 - in_b[0] - in_b[1]];
-        return orient(p, q, other_a, other_b) == 0 && side(p, q, other_a, axis_a) * side(p, q, other_b, axis_a) > 0;
+        return side(p, q, other_a, axis_a) * side(p, q, other_b, axis_a) > 0;
     }
     if (shared == 1) {
         const int i = in_a[0], j = in_b[0];
