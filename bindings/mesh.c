@@ -306,7 +306,8 @@ static PyMethodDef mesh_methods[] = {
      "``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. ``fine``: triangles\n"
      "that leave the Surface, beside edges closer to each other than a voxel, are split; that takes longer.\n"
      "``keep_volume``: vertices are shifted, by a fifth of the error at most (a hundredth of a voxel where it is 0),\n"
-     "until the mesh has the volume of the surface. What it came to is in ``contour``."},
+     "until the mesh has the volume of the surface, ``contour.surface_mm3``, or is as near to it as that allows.\n"
+     "What it came to is in ``contour``."},
     {"stream", WITH_KEYWORDS(mesh_stream), METH_VARARGS | METH_KEYWORDS | METH_CLASS,
      "stream($type, stock, path, error=0.0, *, surface=None, moves=None, fine=False, keep_volume=False,\n"
      "memory_limit=0, progress=None)\n"

@@ -696,7 +696,8 @@ class Mesh:
         ``moves`` (None: all), edges as sharp as they are; without one they come from the voxels. ``fine``: triangles
         that leave the Surface, beside edges closer to each other than a voxel, are split; that takes longer.
         ``keep_volume``: vertices are shifted, by a fifth of the error at most (a hundredth of a voxel where it is 0),
-        until the mesh has the volume of the surface. What it came to is in ``contour``."""
+        until the mesh has the volume of the surface, ``contour.surface_mm3``, or is as near to it as that allows.
+        What it came to is in ``contour``."""
     @classmethod
     def stream(
         cls,

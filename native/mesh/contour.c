@@ -268,10 +268,15 @@ static swarf_status find_pairs(const stage *s, int first, found *out)
     return SWARF_OK;
 }
 
-/* How far vertices may be shifted to keep the volume. */
-static double regained_by(const swarf_contour_options *options, double voxel)
+/* How far vertices may be shifted to keep the volume: where simplifying stopped early, as at a budget, by the same part
+ * of the error that it came to. */
+static double regained_by(const stage *s)
 {
-    return options->error_mm > 0 ? regain_part * options->error_mm : regain_least * voxel;
+    const double error = s->options->error_mm, least = regain_least * s->work->layout->voxel;
+    float most = 0;
+    if (!(error > 0)) return least;
+    for (size_t f = 0; f < s->facets->facet_count; f++) most = fmaxf(most, s->facets->facet[f].error_mm);
+    return fmin(regain_part * error, fmax(least, regain_part / (1 - regain_part) * (double)most));
 }
 
 /* Join, simplify, look for facets that cut each other. */
@@ -298,7 +303,7 @@ static swarf_status attempt(const stage *s, int first, found *out)
         status = swarf_facets_simplify(s->facets, work->error_mm, voxel, s->options->triangle_budget, marks, s->memo,
                                        first ? s->progress : NULL, fine ? 0.8 : 0.7, 0.9);
     if (status == SWARF_OK && s->options->keep_volume) {
-        status = swarf_facets_regain(s->facets, marks, regained_by(s->options, voxel));
+        status = swarf_facets_regain(s->facets, marks, regained_by(s));
         swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
     }
     free(marks);

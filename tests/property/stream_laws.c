@@ -78,7 +78,8 @@ static void check_bands(swarf_stock *stock, const swarf_contour_options *options
     CHECK(euler_number(mesh) == euler_number(whole));
     /* where triangles cut each other vertices were put elsewhere in their cells, perhaps in one of the two only */
     const int as_found = !made->intersections_found && !report.intersections_found;
-    const double bound = 2 * options->error_mm + 1e-5, most = as_found ? bound : 1.8 * swarf_stock_voxel(stock);
+    const double bound = 2 * fmax(options->error_mm, shifted) + 1e-5,
+                 most = as_found ? bound : 1.8 * swarf_stock_voxel(stock);
     CHECK_NEAR(topology.volume_mm3, all.volume_mm3, bound * all.area_mm2 + (as_found ? 0 : 1e-4 * all.volume_mm3));
     CHECK_NEAR(farthest(mesh, whole), 0, most);
     CHECK_NEAR(farthest(whole, mesh), 0, most);

@@ -32,9 +32,10 @@ typedef struct swarf_contour_options {
      *  each plane between two stays as it is. */
     int fine;
     /** 0 or 1. 1: vertices are shifted, by a fifth of the error at most (where that is 0 by a hundredth of a voxel), so
-     *  that the volume of the mesh becomes surface_mm3 of its report: flat triangles with their corners on a curved
-     *  surface have another. That fifth is kept for it, so there are more triangles. Corners of triangles that would
-     *  turn or cut others stay, and those along the planes between bands. */
+     *  that the volume of the mesh becomes surface_mm3 of its report, or comes as near to it as that allows: flat
+     *  triangles with their corners on a curved surface have another. That fifth is kept for it, so there are more
+     *  triangles. Corners of triangles that would turn or cut others stay, and those along the planes between bands;
+     *  what `fine` adds by splitting is not taken elsewhere. With a budget it is a fifth of the error that met it. */
     int keep_volume;
 } swarf_contour_options;
 
