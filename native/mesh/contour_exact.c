@@ -3,8 +3,9 @@
  *
  * The crossings are sorted into faces by what cut them and by their normals. Where there is more than one, the vertex
  * is where their planes meet; the planes are then taken again on their faces close to the point found, so that curved
- * faces meet where they truly do. What comes out counts only if it lies on the surface: faces that are hidden where
- * they would meet leave the pairs of them, and these the point of the surface nearest to the middle of the crossings.
+ * faces meet where they truly do: at once very close, and in steps where the faces bend too much for that. What comes
+ * out counts only if it lies on the surface: faces that are hidden where they would meet leave the pairs of them, and
+ * these the point of the surface nearest to the middle of the crossings.
  */
 #include "mesh/contour.h"
 
@@ -23,6 +24,9 @@ static const double least_eigenvalue = 1.5e-4, first_eigenvalue = 1e-3;
 /* How near to the vertex found its planes are taken, round by round, in parts of the way to the crossings. The error
  * of a round is the bend over that way, so each is well within the next one's reach. */
 static const double approach[] = {0.5, 0.2, 0.05, 0.01};
+/* The same where faces bend so little that they are near at once, as most do; and what the bend may then be expected to
+ * leave, in voxels: what Newton's steps leave elsewhere. */
+static const double quick_approach[] = {0.1, 0.03, 0.03}, well_met = 1e-4;
 /* A face near the vertex is the one at the crossings if it has turned by less than 25 degrees on the way. */
 static const double met_again_cosine = 0.906;
 /* In voxels: on the surface; where Newton's steps end. A tenth and a hundredth of what the mesh promises. */
@@ -108,35 +112,67 @@ static int is_face(const face *const chosen[MOST_FACES], int count, int own, con
     return likeness > met_again_cosine;
 }
 
-/* Take each plane again where its face is near x; those that are not seen there stay as they are. Returns whether all
- * were seen. */
+/* Take the plane of face number `own` of `chosen` again where it is near x; 0, and it stays as it is, where the face is
+ * not seen there. */
+static int take_one(const cell *c, const face *const chosen[MOST_FACES], int count, int own, const double x[3],
+                    double part, contour_plane *plane)
+{
+    double q[3];
+    swarf_surface_point found;
+    for (int k = 0; k < 3; k++) q[k] = x[k] + part * (chosen[own]->plane.point[k] - x[k]);
+    for (int step = 0; step < 3; step++) {
+        const double value = look(c, q, &found);
+        if (!is_face(chosen, count, own, &found)) return 0;
+        for (int k = 0; k < 3; k++) q[k] -= value * found.normal[k];
+        if (fabs(value) < one_step) break;
+    }
+    memcpy(plane->point, q, sizeof q);
+    memcpy(plane->normal, found.normal, sizeof found.normal);
+    return 1;
+}
+
+/* Take each plane that is seen again near x; returns whether all were. */
 static int take_again(const cell *c, const face *const chosen[MOST_FACES], int count, const double x[3], double part,
                       contour_plane *planes)
 {
     int all = 1;
-    for (int i = 0; i < count; i++) {
-        double q[3];
-        swarf_surface_point found;
-        int seen = 0;
-        for (int k = 0; k < 3; k++) q[k] = x[k] + part * (chosen[i]->plane.point[k] - x[k]);
-        for (int step = 0; step < 3; step++) {
-            const double value = look(c, q, &found);
-            seen = is_face(chosen, count, i, &found);
-            if (!seen) break;
-            for (int k = 0; k < 3; k++) q[k] -= value * found.normal[k];
-            if (fabs(value) < one_step) break;
-        }
-        all &= seen;
-        if (!seen) continue;
-        memcpy(planes[i].point, q, sizeof q);
-        memcpy(planes[i].normal, found.normal, sizeof found.normal);
-    }
+    for (int i = 0; i < count; i++) all &= take_one(c, chosen, count, i, x, part, &planes[i]);
     return all;
 }
 
 static double apart(const double a[3], const double b[3])
 {
     return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
+/* Whether the point where faces meet is one of the surface, in the cell; moves it into the bounds. */
+static int is_there(const cell *c, double x[3])
+{
+    const contour_bounds *bounds = &c->polygon->bounds;
+    for (int k = 0; k < 3; k++)
+        if (x[k] < bounds->lo[k] - allowed_outside || x[k] > bounds->hi[k] + allowed_outside) return 0;
+    swarf_surface_point found;
+    swarf_contour_clamp(bounds, x);
+    return fabs(look(c, x, &found)) <= on_surface;
+}
+
+/* Where faces that hardly bend meet, from where their planes at the crossings do: the rank, or 1 where a face is not
+ * seen at once. What a round moves the point by tells the bend, and that what the round has left. */
+static int meet_quickly(const cell *c, const face *const chosen[MOST_FACES], int count, double x[3])
+{
+    contour_plane planes[MOST_FACES];
+    double from = 1;
+    for (size_t round = 0; round < sizeof quick_approach / sizeof *quick_approach; round++) {
+        const double about[3] = {x[0], x[1], x[2]}, part = quick_approach[round], left = part * part / (from * from);
+        for (int i = 0; i < count; i++)
+            if (!take_one(c, chosen, count, i, x, part, &planes[i])) return 1;
+        const int rank = swarf_contour_meet(planes, count, about, least_eigenvalue, &c->polygon->bounds, x);
+        if (rank < 2) return 1;
+        if (apart(x, about) * left * left < well_met * well_met) return is_there(c, x) ? rank : 1;
+        swarf_contour_clamp(&c->polygon->bounds, x);
+        from = part;
+    }
+    return 1;
 }
 
 /* Where the chosen faces meet in the cell: the rank, or 1 when they do not. Planes from afar may lead out of the cell
@@ -146,7 +182,13 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
     contour_plane planes[MOST_FACES];
     const contour_bounds *bounds = &c->polygon->bounds;
     for (int i = 0; i < count; i++) planes[i] = chosen[i]->plane;
-    int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, bounds, x), seen = 0, outside = 0;
+    int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, bounds, x), seen = 0;
+    if (rank < 2) return 1;
+    swarf_contour_clamp(bounds, x);
+    const double first[3] = {x[0], x[1], x[2]};
+    const int quickly = meet_quickly(c, chosen, count, x);
+    if (quickly > 1) return quickly;
+    memcpy(x, first, sizeof first);
     const size_t rounds = sizeof approach / sizeof *approach;
     for (size_t round = 0; round < rounds && rank > 1; round++) {
         swarf_contour_clamp(bounds, x);
@@ -155,11 +197,7 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
         rank = swarf_contour_meet(planes, count, about, least_eigenvalue, bounds, x);
         if (seen && apart(x, about) < settled * settled && round + 2 < rounds) round = rounds - 2;
     }
-    for (int k = 0; k < 3; k++)
-        outside |= x[k] < bounds->lo[k] - allowed_outside || x[k] > bounds->hi[k] + allowed_outside;
-    swarf_surface_point found;
-    swarf_contour_clamp(bounds, x);
-    return rank > 1 && seen && !outside && fabs(look(c, x, &found)) <= on_surface ? rank : 1;
+    return rank > 1 && seen && is_there(c, x) ? rank : 1;
 }
 
 /* Move x onto the surface within the cell; 0 when Newton's steps do not lead there. */

@@ -12,7 +12,7 @@
 static const double voxel = 0.2, pi = 3.14159265358979323846;
 static const swarf_box block = {{-7.03, -7.07, -5.02}, {7.05, 7.01, 0.01}};
 
-enum { MOST_PATHS = 4, MOST_SAMPLED = 2000, MOST_EDGE_POINTS = 20000 };
+enum { MOST_PATHS = 4, MOST_SAMPLED = 2000, MOST_REACHED = 8000, MOST_EDGE_POINTS = 20000 };
 
 typedef struct part {
     oracle_body body;
@@ -265,11 +265,11 @@ typedef struct reach {
 
 static reach measure_reach(const part *truth, const swarf_mesh *mesh, const edges *e, double asked, test_random *random)
 {
-    static double points[MOST_SAMPLED][3], distance[MOST_SAMPLED];
+    static double points[MOST_REACHED][3], distance[MOST_REACHED];
     const swarf_triangles t = swarf_mesh_triangles(mesh);
     reach out = {0};
     int count = 0, beyond = 0;
-    for (int i = 0; i < MOST_SAMPLED; i++) {
+    for (int i = 0; i < MOST_REACHED; i++) {
         const uint32_t *v = t.index + 3 * test_random_below(random, t.triangle_count);
         double a = test_random_in(random, 0, 1), b = test_random_in(random, 0, 1), p[3];
         if (a + b > 1) {
@@ -283,12 +283,12 @@ static reach measure_reach(const part *truth, const swarf_mesh *mesh, const edge
         out.there = fmax(out.there, away);
         beyond += away > asked;
     }
-    for (int i = 0; i < MOST_SAMPLED && count < MOST_SAMPLED / 2; i++) count += find_true(truth, random, points[count]);
-    const int stride = 1 + e->count / (MOST_SAMPLED / 2);
-    for (int i = 0; i < e->count && count < MOST_SAMPLED; i += stride)
+    for (int i = 0; i < MOST_REACHED && count < MOST_REACHED / 2; i++) count += find_true(truth, random, points[count]);
+    const int stride = 1 + e->count / (MOST_REACHED / 2);
+    for (int i = 0; i < e->count && count < MOST_REACHED; i += stride)
         memcpy(points[count++], e->point[i], sizeof *points);
     swarf_solid *solid = NULL;
-    CHECK(count > MOST_SAMPLED / 10);
+    CHECK(count > MOST_REACHED / 10);
     if (CHECK_OK(swarf_solid_create(&t, NULL, &solid)))
         CHECK_OK(swarf_solid_distance(solid, points[0], (size_t)count, NULL, distance, NULL));
     for (int i = 0; solid && i < count; i++) {
@@ -296,7 +296,7 @@ static reach measure_reach(const part *truth, const swarf_mesh *mesh, const edge
         beyond += fabs(distance[i]) > asked * voxel;
     }
     swarf_solid_release(solid);
-    out.beyond = (double)beyond / (count + MOST_SAMPLED);
+    out.beyond = (double)beyond / (count + MOST_REACHED);
     return out;
 }
 
