@@ -268,10 +268,11 @@ static void middle_of(const contour_polygon *polygon, double out[3])
         for (int k = 0; k < 3; k++) out[k] += polygon->point[i][k] / polygon->count;
 }
 
-static void place_smooth(const cell *c, double out[3])
+/* On the surface as near to `from` as Newton's steps lead. */
+static void place_smooth(const cell *c, const double from[3], double out[3])
 {
     swarf_surface_point found;
-    memcpy(out, c->middle, sizeof c->middle);
+    memcpy(out, from, sizeof c->middle);
     if (!project(c, out, &found)) take_crossing(c, out);
 }
 
@@ -279,7 +280,7 @@ void swarf_contour_vertex_smooth(const contour_polygon *polygon, const swarf_sur
 {
     cell c = {.polygon = polygon, .near = near};
     middle_of(polygon, c.middle);
-    place_smooth(&c, out);
+    place_smooth(&c, c.middle, out);
 }
 
 int swarf_contour_vertex_exact(const contour_polygon *polygon, const swarf_surface_near *near, double out[3])
@@ -298,8 +299,12 @@ int swarf_contour_vertex_exact(const contour_polygon *polygon, const swarf_surfa
     if (least_dot < (one_piece ? one_face_cosine : same_face_cosine)) {
         find_faces(&c);
         const int rank = meet(&c, out);
-        if (rank > 1) return rank;
+        if (rank == 1) place_smooth(&c, c.middle, out);
+        return rank;
     }
-    place_smooth(&c, out);
+    double above[3] = {c.middle[0], c.middle[1], c.middle[2]};
+    swarf_contour_rise(polygon, above);
+    swarf_contour_clamp(&polygon->bounds, above);
+    place_smooth(&c, above, out);
     return 1;
 }
