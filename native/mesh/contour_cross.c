@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* First pass of contouring: the blocks, their values, and where the surface crosses their edges. */
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/status.h"
 #include "mesh/contour.h"
 #include "mesh/contour_sharp.h"
@@ -16,7 +17,7 @@
 static const double crossing_tolerance = 1e-5, noise = 1e-3;
 /* Where second differences of the field (in voxels) are less than this at both ends of an edge, the surface is flat:
  * linear crossings are right to an eighth of it, central differences to half of it (as an angle). */
-static const float flat_bend = 1e-3f;
+static const float plane_bend = 1e-3f;
 /* An edge that meets the surface at a flatter angle than this (as a sine) is left to the bracketed search. */
 static const double least_slope = 0.1;
 
@@ -41,6 +42,19 @@ contour_block *swarf_contour_block_at(const contour *work, const int32_t ijk[3])
 static int is_wanted(const contour_band *band, int32_t x)
 {
     return !band || (x >= band->first - SWARF_LEAF_DIM && x < band->end + 3 * SWARF_LEAF_DIM);
+}
+
+/* The blocks of a node: their memory is touched here for the first time, which takes longest. */
+static swarf_status begin_blocks(void *context, size_t node)
+{
+    contour *work = context;
+    int32_t origin[3];
+    swarf_node_corner(work->layout, node, origin);
+    for (unsigned slot = 0; slot < SWARF_NODE_SLOTS; slot++) {
+        const uint32_t block = work->block_at[node * SWARF_NODE_SLOTS + slot];
+        if (block != UINT32_MAX) swarf_leaf_corner(origin, slot, work->blocks[block].ijk);
+    }
+    return SWARF_OK;
 }
 
 /* A cell of the surface has a corner in a leaf, so its low corner lies in that leaf or in one of the seven below. */
@@ -70,13 +84,7 @@ swarf_status swarf_contour_blocks(contour *work)
         if (work->block_at[place] == 0) work->block_at[place] = (uint32_t)work->block_count++;
     work->blocks = calloc(work->block_count ? work->block_count : 1, sizeof *work->blocks);
     if (!work->blocks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for %zu blocks", work->block_count);
-    for (size_t place = 0; place < places; place++) {
-        if (work->block_at[place] == UINT32_MAX) continue;
-        int32_t origin[3];
-        swarf_node_corner(layout, place / SWARF_NODE_SLOTS, origin);
-        swarf_leaf_corner(origin, (unsigned)(place % SWARF_NODE_SLOTS), work->blocks[work->block_at[place]].ijk);
-    }
-    return SWARF_OK;
+    return swarf_parallel_for(nodes, begin_blocks, work, NULL, 0, 1);
 }
 
 /* The values of the leaf at a corner; NULL where there is none, all of it is then *tile. */
@@ -236,7 +244,7 @@ static swarf_status cross_edges(const contour *work, contour_block *block, const
                 const int bit = __builtin_ctzll(word), at[3] = {x, bit >> 3, bit & 7};
                 const float *value = values + ((x + 1) * SWARF_HALO + at[1] + 1) * SWARF_HALO + at[2] + 1;
                 cross_field(value, axis, next);
-                if (bends_less(value, axis, flat_bend * voxel)) {
+                if (bends_less(value, axis, plane_bend * voxel)) {
                     next->t = fminf(fmaxf(next->t, (float)SWARF_CONTOUR_MARGIN), 1 - (float)SWARF_CONTOUR_MARGIN);
                     next->move = SWARF_BY_FLAT_FIELD;
                     continue;

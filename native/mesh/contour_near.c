@@ -35,8 +35,14 @@ static swarf_status collect(contour_near *near)
     static const int corner[3] = {0, 0, 0};
     if (near->all) return SWARF_OK;
     const swarf_box box = box_of(near, corner, SWARF_LEAF_DIM);
-    SWARF_TRY(swarf_surface_near_create(near->work->surface, &near->all));
-    return swarf_surface_collect(near->all, near->work->moves, &box);
+    swarf_surface_near *all;
+    SWARF_TRY(swarf_surface_near_create(near->work->surface, &all));
+    const swarf_status status = swarf_surface_collect(all, near->work->moves, &box);
+    if (status == SWARF_OK)
+        near->all = all;
+    else
+        swarf_surface_near_destroy(all);
+    return status;
 }
 
 swarf_status swarf_contour_near_get(contour_near *near, const int at[3], const swarf_surface_near **out)
