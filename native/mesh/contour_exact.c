@@ -186,7 +186,7 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
     if (rank < 2) return 1;
     swarf_contour_clamp(bounds, x);
     const double first[3] = {x[0], x[1], x[2]};
-    const int quickly = meet_quickly(c, chosen, count, x);
+    const int quickly = c->count == 2 ? meet_quickly(c, chosen, count, x) : 1; /* at corners it seldom pays */
     if (quickly > 1) return quickly;
     memcpy(x, first, sizeof first);
     const size_t rounds = sizeof approach / sizeof *approach;
