@@ -21,6 +21,8 @@ enum { ATTEMPTS = 7, CLOSE_LOOKS = 7 };
 /* Of the error, what shifting vertices may take to keep the volume; in voxels, that where there is none. A face that
  * bends evenly takes two thirds of what leaving vertices out took. */
 static const double regain_part = 0.2, regain_least = 0.01;
+/* In voxels: faces from which crossings are no farther are flat, and stay where they are. */
+static const double regain_flat = 2e-4;
 
 swarf_contour_options swarf_contour_options_default(void)
 {
@@ -303,7 +305,7 @@ static swarf_status attempt(const stage *s, int first, found *out)
         status = swarf_facets_simplify(s->facets, work->error_mm, voxel, s->options->triangle_budget, marks, s->memo,
                                        first ? s->progress : NULL, fine ? 0.8 : 0.7, 0.9);
     if (status == SWARF_OK && s->options->keep_volume) {
-        status = swarf_facets_regain(s->facets, marks, regained_by(s));
+        status = swarf_facets_regain(s->facets, marks, regained_by(s), regain_flat * voxel);
         swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
     }
     free(marks);

@@ -175,6 +175,11 @@ static int meet_quickly(const cell *c, const face *const chosen[MOST_FACES], int
     return 1;
 }
 
+static int is_one_piece(const face *const two[MOST_FACES])
+{
+    return two[0]->move == two[1]->move && two[0]->piece == two[1]->piece;
+}
+
 /* Where the chosen faces meet in the cell: the rank, or 1 when they do not. Planes from afar may lead out of the cell
  * though their faces meet in it, so that only the last round decides. */
 static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int count, double x[3])
@@ -186,7 +191,8 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
     if (rank < 2) return 1;
     swarf_contour_clamp(bounds, x);
     const double first[3] = {x[0], x[1], x[2]};
-    const int quickly = c->count == 2 ? meet_quickly(c, chosen, count, x) : 1; /* at corners it seldom pays */
+    /* at corners it seldom pays, and two sides of one piece may be one that bends */
+    const int quickly = c->count == 2 && !is_one_piece(chosen) ? meet_quickly(c, chosen, count, x) : 1;
     if (quickly > 1) return quickly;
     memcpy(x, first, sizeof first);
     const size_t rounds = sizeof approach / sizeof *approach;

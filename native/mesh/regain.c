@@ -15,6 +15,7 @@
 #include "base/status.h"
 #include "mesh/eigen.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,13 +28,12 @@ static const double least_cosine = 0.95;
 /* How often shifts are found; of what was lost, the rest that is not worth finding them again. */
 enum { ROUNDS = 5 };
 static const double settled = 1e-2;
-/* Of the greatest shift: facets that lost less are flat. */
-static const double least_height = 1e-3;
 
 typedef struct regaining {
     const swarf_facets *facets;
     const uint8_t *marks;
     double most;     /* mm */
+    double flat;     /* mm: facets that lost less all over are flat */
     uint32_t *begin; /* of each vertex: its facets' first place in the list, and after the last vertex */
     uint32_t *list;
     float *shift;      /* of each vertex, mm */
@@ -139,7 +139,7 @@ static int take_back(const regaining *r)
 
 static int is_bent(const regaining *r, size_t f, double twice)
 {
-    return fabs((double)r->facets->facet[f].lost_mm3) > least_height * r->most * 0.5 * twice;
+    return fabs((double)r->facets->facet[f].lost_mm3) > 0.5 * twice * r->flat;
 }
 
 /* A facet whose corners move evenly sweeps its mean area along the way of its middle. */
@@ -231,11 +231,20 @@ static swarf_status settle(regaining *r)
     return SWARF_OK;
 }
 
-swarf_status swarf_facets_regain(swarf_facets *facets, const uint8_t *marks, double most_mm)
+/* What positions are rounded by, in mm. */
+static double rounding_of(const swarf_facets *facets)
+{
+    float most = 0;
+    for (size_t i = 0; i < 3 * facets->vertex_count; i++) most = fmaxf(most, fabsf(facets->xyz[i]));
+    return (double)(most * FLT_EPSILON);
+}
+
+swarf_status swarf_facets_regain(swarf_facets *facets, const uint8_t *marks, double most_mm, double flat_mm)
 {
     regaining r = {.facets = facets,
                    .marks = marks,
                    .most = most_mm,
+                   .flat = fmax(flat_mm, rounding_of(facets)),
                    .begin = calloc(facets->vertex_count + 2, sizeof *r.begin),
                    .list = malloc((3 * facets->facet_count + 1) * sizeof *r.list),
                    .shift = calloc(3 * facets->vertex_count + 1, sizeof *r.shift),
