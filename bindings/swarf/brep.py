@@ -201,7 +201,10 @@ class _Maker:
         if start != end and self.shape(chain.left).kind == self.shape(chain.right).kind == PLANE:
             return Edge(start, end)  # however flatly they cross: between, it would be less exact
         points = self.samples(chain, corners[start], corners[end])
-        for close in (CLOSE, CLOSE + 2 * self.left):  # a short arc may be as good as a line where corners are inexact
+        closeness = [CLOSE, CLOSE + 2 * self.left]  # a short arc may be as good as a line where corners are inexact
+        if chain.touching:  # and where faces touch they are by the root of what is left
+            closeness.append(CLOSE + 4 * math.sqrt(self.left))
+        for close in closeness:
             if start != end and _is_line(points, close):
                 return Edge(start, end)
             circle = _circle(self.shape(chain.left), self.shape(chain.right), points, close)

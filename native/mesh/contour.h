@@ -56,8 +56,8 @@ typedef struct contour_crossing {
     int32_t piece; /* of the first shape or the cutter */
 } contour_crossing;
 
-/** Crossings known from the field alone: of a surface that lies elsewhere; beside an edge, from the faces that meet
- *  there; or where it is flat, so that nothing else could tell more. */
+/** Crossings known from the field alone: of a surface that lies elsewhere; from the face there, or those that meet
+ *  beside it; or where it is flat, so that nothing else could tell more. */
 enum { SWARF_BY_FIELD = -2, SWARF_BY_FACES = -3, SWARF_BY_FLAT_FIELD = INT32_MIN };
 
 /** An active cell of a block. */

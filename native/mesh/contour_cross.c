@@ -211,8 +211,8 @@ void swarf_contour_cross_exact(const swarf_surface_near *near, const double a[3]
         swarf_surface_evaluate(near, point, &found);
         const double slope = outwards ? found.normal[axis] : -found.normal[axis];
         good = slope > 0 && fabs(found.value) <= crossing_tolerance * voxel;
-        if (good || slope < least_slope) break;
-        t = fmin(fmax(t - found.value / (voxel * found.normal[axis]), 0), 1);
+        if (slope < least_slope) break;
+        t = fmin(fmax(t - found.value / (voxel * found.normal[axis]), 0), 1); /* no look at where it leads */
     }
     if (!good) {
         const double b[3] = {a[0] + (axis == 0) * voxel, a[1] + (axis == 1) * voxel, a[2] + (axis == 2) * voxel};
@@ -251,7 +251,10 @@ static swarf_status cross_edges(const contour *work, contour_block *block, const
                 }
                 if (bends_less(value, axis, swarf_face_bend * voxel)) cross_bent(value, axis, next);
                 if (!work->surface) {
-                    if (bends_less(value, axis, swarf_edge_bend * voxel)) continue;
+                    if (bends_less(value, axis, swarf_edge_bend * voxel)) {
+                        next->move = SWARF_BY_FACES;
+                        continue;
+                    }
                     if (!begun) swarf_contour_sharp_begin(&sharp, work, block);
                     begun = 1;
                     swarf_contour_cross_sharp(&sharp, at, axis, next);

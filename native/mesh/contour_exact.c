@@ -206,16 +206,24 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
     return rank > 1 && seen && is_there(c, x) ? rank : 1;
 }
 
-/* Move x onto the surface within the cell; 0 when Newton's steps do not lead there. */
+static void step_onto(const cell *c, double x[3], double value, const swarf_surface_point *found)
+{
+    for (int k = 0; k < 3; k++) x[k] -= value * found->normal[k];
+    swarf_contour_clamp(&c->polygon->bounds, x);
+}
+
+/* Move x onto the surface within the cell; 0 when Newton's steps do not lead there. Where the last one leads is not
+ * looked at. */
 static int project(const cell *c, double x[3], swarf_surface_point *found)
 {
     double value = look(c, x, found);
     for (int step = 0; step < 8 && fabs(value) > close_enough; step++) {
-        for (int k = 0; k < 3; k++) x[k] -= value * found->normal[k];
-        swarf_contour_clamp(&c->polygon->bounds, x);
+        step_onto(c, x, value, found);
         value = look(c, x, found);
     }
-    return fabs(value) <= on_surface;
+    if (fabs(value) > on_surface) return 0;
+    step_onto(c, x, value, found);
+    return 1;
 }
 
 /* The crossing nearest to the middle of all: it is on the surface, and all but in the cell. */

@@ -181,9 +181,9 @@ int swarf_contour_vertex(const contour_polygon *polygon, double out[3])
             memcpy(planes[i].normal, polygon->normal[i], sizeof planes[i].normal);
         }
         rank = meet_inside(planes, polygon->count, middle, &polygon->bounds, x);
-    } else
+    } else if (by_faces)
         swarf_contour_rise(polygon, x);
-    if (swarf_contour_clamp(&polygon->bounds, x) && !by_faces) project(polygon, x);
+    if ((swarf_contour_clamp(&polygon->bounds, x) || rank < 2) && !by_faces) project(polygon, x);
     memcpy(out, x, sizeof x);
     return rank;
 }
