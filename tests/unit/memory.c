@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Memory that runs out: everything once through, with the k-th allocation failing, for k = 1, 2, ... until none fails.
+/* Memory that runs out: everything once through, with the k-th allocation failing, for k = 1, 2, ... until none fails;
+ * and so each way of making a mesh.
  *
  * malloc() and its kin and operator new are defined here and so come before the libraries'. They count and refuse what
  * libswarf asks for (the caller is known by its address), and keep those blocks in a table while they live, so that
@@ -11,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "test.h"
+#include "stocks.h"
 
 /* glibc's own, under the names that cannot be taken from it. */
 void *__libc_malloc(size_t size);
@@ -162,6 +163,7 @@ struct things {
     swarf_check *check;
     swarf_simulation *simulation;
     swarf_mesh *mesh, *welded;
+    swarf_contour_report report;
     double volume;
     uint64_t hash; /* of the history's stock where its walk ends */
 };
@@ -257,11 +259,106 @@ static swarf_status weld_mesh(struct things *t)
     return swarf_mesh_create(&triangles, &t->welded);
 }
 
-typedef swarf_status (*step_fn)(struct things *t);
-static const struct step {
+/* A block with a slot along its side, a groove that leaves a thin wall beside it, and a ball's trace across both: with
+ * a cell that is parted, triangles that cut each other and edges to split. Made once. */
+static struct {
+    swarf_stock *stock;
+    swarf_surface *surface;
+} part;
+
+static void make_part(void)
+{
+    static const struct {
+        const char *cutter;
+        double from[3], to[3];
+    } cuts[] = {{"flat:d=0.5,l=9", {-1, 1, -0.3}, {3, 1.4, -0.3}},
+                {"chamfer:d=1,l=9,a=60", {-1, 0.2, -0.8}, {3, 0.7, -0.8}},
+                {"ball:d=1,l=9", {1.1, -1, -0.4}, {1.3, 3, -0.4}}};
+    enum { CUTS = sizeof cuts / sizeof *cuts };
+    const swarf_box box = {{0, 0, -1.2}, {1.6, 1.4, 0}};
+    swarf_tool tools[CUTS];
+    swarf_stock *first = stock_block(&box, 0.2);
+    swarf_program *program = NULL;
+    part.stock = stock_block(&box, 0.2);
+    CHECK_OK(swarf_program_create((double[3]){0, 0, 9}, &program));
+    CHECK_OK(swarf_program_add_operation(program, "cut"));
+    for (int i = 0; i < CUTS; i++) {
+        swarf_cutter *cutter = NULL;
+        const swarf_section section = {.tool = i + 1};
+        swarf_path path = {.has_motion = 1};
+        if (!CHECK_OK(swarf_cutter_parse(cuts[i].cutter, &cutter))) exit(test_end());
+        memcpy(path.start, cuts[i].from, sizeof path.start);
+        memcpy(path.end, cuts[i].to, sizeof path.end);
+        CHECK_OK(swarf_stock_cut(part.stock, cutter, &path, 1, NULL));
+        CHECK_OK(swarf_program_set_section(program, &section));
+        CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_POSITION, path.start, 0, 1));
+        CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_FEED, path.end, 100, 1));
+        tools[i] = (swarf_tool){.number = i + 1, .cutter = cutter};
+    }
+    CHECK_OK(swarf_surface_create(first, program, tools, CUTS, NULL, &part.surface));
+    for (int i = 0; i < CUTS; i++) swarf_cutter_release((swarf_cutter *)tools[i].cutter);
+    swarf_program_release(program);
+    swarf_stock_destroy(first);
+}
+
+static void release_part(void)
+{
+    swarf_surface_release(part.surface);
+    swarf_stock_destroy(part.stock);
+}
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) hash = (hash ^ ((const unsigned char *)bytes)[i]) * 0x100000001B3u;
+    return hash; /* FNV-1a */
+}
+
+static swarf_status contour(struct things *t, const swarf_surface *surface, int fine, int keep_volume)
+{
+    swarf_contour_options options = swarf_contour_options_default();
+    options.surface = surface;
+    options.fine = fine;
+    options.keep_volume = keep_volume;
+    options.error_mm = keep_volume ? 0.01 : 0;
+    const swarf_status status = swarf_mesh_contour(part.stock, &options, NULL, &t->mesh, &t->report);
+    CHECK((status == SWARF_OK) == (t->mesh != NULL));
+    if (status != SWARF_OK) return status;
+    const swarf_triangles mesh = swarf_mesh_triangles(t->mesh);
+    t->volume = swarf_mesh_topology(t->mesh).volume_mm3;
+    t->hash = hash_bytes(0xCBF29CE484222325u, mesh.xyz, 3 * mesh.vertex_count * sizeof *mesh.xyz);
+    t->hash = hash_bytes(t->hash, mesh.index, 3 * mesh.triangle_count * sizeof *mesh.index);
+    return SWARF_OK;
+}
+
+static swarf_status contour_field(struct things *t)
+{
+    return contour(t, NULL, 0, 0);
+}
+
+static swarf_status contour_surface(struct things *t)
+{
+    return contour(t, part.surface, 0, 0);
+}
+
+static swarf_status contour_fine(struct things *t)
+{
+    const swarf_status status = contour(t, part.surface, 1, 0);
+    const swarf_contour_report *report = &t->report;
+    if (status == SWARF_OK) CHECK(report->parted_cells && report->intersections_found && report->split_edges);
+    return status;
+}
+
+static swarf_status contour_kept(struct things *t)
+{
+    return contour(t, part.surface, 0, 1);
+}
+
+struct step {
     const char *name;
-    step_fn fn;
-} steps[] = {
+    swarf_status (*fn)(struct things *t);
+};
+
+static const struct step all[] = {
     {"read the program", read_program},
     {"read the language", read_language},
     {"make the cutter", make_cutter},
@@ -273,6 +370,13 @@ static const struct step {
     {"walk through it", walk},
     {"make the mesh", make_mesh},
     {"weld the mesh", weld_mesh},
+};
+
+static const struct step contours[] = {
+    {"contour the field", contour_field},
+    {"contour the surface", contour_surface},
+    {"contour finely", contour_fine},
+    {"contour and keep the volume", contour_kept},
 };
 
 static void release(struct things *t)
@@ -290,8 +394,10 @@ static void release(struct things *t)
     swarf_notes_destroy(t->notes);
 }
 
-/* One go through everything. */
+/* One go through some steps. */
 struct round {
+    const struct step *steps;
+    size_t count;
     size_t fail;     /* the number of the allocation that fails, 0: none */
     double expected; /* volume at the end, 0: not known yet */
     uint64_t expected_hash;
@@ -311,12 +417,13 @@ static void *play_round(void *argument)
     atomic_store(&refuse, round->fail);
     atomic_store(&watching, 1);
     int ok = 1;
-    for (size_t i = 0; i < sizeof steps / sizeof *steps && ok; i++) {
+    for (size_t i = 0; i < round->count && ok; i++) {
+        const struct step *step = &round->steps[i];
         const int before = atomic_load(&refused);
-        swarf_status status = steps[i].fn(&t);
-        if (status == SWARF_ERROR_MEMORY && !before && atomic_load(&refused)) status = steps[i].fn(&t);
+        swarf_status status = step->fn(&t);
+        if (status == SWARF_ERROR_MEMORY && !before && atomic_load(&refused)) status = step->fn(&t);
         ok = status == SWARF_OK;
-        if (!ok) printf("allocation %zu, %s: %s\n", round->fail, steps[i].name, swarf_error_last());
+        if (!ok) printf("allocation %zu, %s: %s\n", round->fail, step->name, swarf_error_last());
     }
     release(&t);
     round->asked = atomic_load(&asked);
@@ -342,20 +449,36 @@ static void run_round(struct round *round)
     CHECK(left == 0);
 }
 
+/* With every `stride`th allocation failing; volume of what the steps made. */
+static double fail_each(const struct step *steps, size_t count, size_t stride)
+{
+    struct round first = {.steps = steps, .count = count}, second = first;
+    run_round(&first);
+    run_round(&second);
+    CHECK(second.asked > 50);
+    for (size_t k = 1; k <= second.asked; k += stride) {
+        struct round round = second;
+        round.fail = k;
+        round.expected = second.volume;
+        round.expected_hash = second.hash;
+        run_round(&round);
+        CHECK(atomic_load(&refused));
+    }
+    printf("%s ...: one in %zu of %zu allocations failed\n", steps->name, stride, second.asked);
+    return second.volume;
+}
+
 int main(void)
 {
     CHECK(dl_iterate_phdr(find_code, NULL) == 1);
     CHECK_OK(swarf_threads_set(1)); /* the same allocation is the k-th in each round */
-    struct round first = {0}, second = {0};
-    run_round(&first);
-    run_round(&second);
-    CHECK(second.volume > 500 && second.volume < 1000);
-    CHECK(second.asked > 100);
-    for (size_t k = 1; k <= second.asked; k++) {
-        struct round round = {.fail = k, .expected = second.volume, .expected_hash = second.hash};
-        run_round(&round);
-        CHECK(atomic_load(&refused));
+    const double milled = fail_each(all, sizeof all / sizeof *all, 1);
+    CHECK(milled > 500 && milled < 1000);
+    make_part();
+    for (size_t i = 0; i < sizeof contours / sizeof *contours; i++) {
+        const double part_mm3 = fail_each(&contours[i], 1, test_size() == TEST_FULL ? 1 : 5);
+        CHECK(part_mm3 > 1 && part_mm3 < 2);
     }
-    printf("%zu allocations, each failed once\n", second.asked);
+    release_part();
     return test_end();
 }
