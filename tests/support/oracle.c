@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "oracle.h"
 
+#include "gradient.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -306,18 +308,30 @@ double oracle_distance(const oracle_body *body, const swarf_path *path, const do
     return least;
 }
 
+typedef struct sweep {
+    const oracle_body *body;
+    const swarf_path *path;
+} sweep;
+
+static double sweep_distance(const void *of, const double point[3])
+{
+    const sweep *s = of;
+    return oracle_distance(s->body, s->path, point);
+}
+
+double oracle_gradient(const oracle_body *body, const swarf_path *path, const double point[3], double step,
+                       double out[3])
+{
+    const sweep of = {body, path};
+    return test_gradient(sweep_distance, &of, point, step, out);
+}
+
 int oracle_is_smooth(const oracle_body *body, const swarf_path *path, const double point[3], double distance,
                      double voxel)
 {
     const double step = 0.05 * voxel;
-    double normal[3], length = 0;
-    for (int i = 0; i < 3; i++) {
-        double a[3] = {point[0], point[1], point[2]}, b[3] = {point[0], point[1], point[2]};
-        a[i] -= step, b[i] += step;
-        normal[i] = (oracle_distance(body, path, b) - oracle_distance(body, path, a)) / (2 * step);
-        length += normal[i] * normal[i];
-    }
-    if (fabs(sqrt(length) - 1) > 0.01) return 0;
+    double normal[3];
+    if (fabs(oracle_gradient(body, path, point, step, normal) - 1) > 0.01) return 0;
     const double aside[3] = {fabs(normal[0]) < 0.7, fabs(normal[0]) >= 0.7, 0};
     double u[3], v[3], size = 0;
     for (int i = 0; i < 3; i++)

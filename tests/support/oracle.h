@@ -57,6 +57,10 @@ int oracle_sign(const oracle_body *body, const swarf_path *path, const double po
  *  the sweep it is the Euclidean distance to it. */
 double oracle_distance(const oracle_body *body, const swarf_path *path, const double point[3]);
 
+/** Gradient of the distance, by test_gradient(); its length. */
+double oracle_gradient(const oracle_body *body, const swarf_path *path, const double point[3], double step,
+                       double out[3]);
+
 /** Is the sweep's surface smooth for 1.5 voxels around the foot of a point at this distance? (It bends away from its
  *  tangent plane by at most 0.15 voxels there, and no second surface comes near.) */
 int oracle_is_smooth(const oracle_body *body, const swarf_path *path, const double point[3], double distance,

@@ -109,7 +109,9 @@ static void check_error(void)
     swarf_mesh *full = NULL;
     if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &full, NULL))) return;
     size_t before = swarf_mesh_triangles(full).triangle_count;
-    for (double error = 0.001; error < 0.1; error *= 4) {
+    static const double errors[] = {0.001, 0.004, 0.016, 0.064};
+    for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) {
+        const double error = errors[i];
         swarf_mesh *mesh = NULL;
         options.error_mm = error;
         if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL))) continue;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cases.h"
+#include "gradient.h"
 #include "stocks.h"
 
 static const double voxel = 0.2, pi = 3.14159265358979323846;
@@ -48,8 +49,9 @@ static double sweep_distance(const part *t, int i, const double p[3])
 }
 
 /* The true surface's distance with its sign: of the block less the sweeps. */
-static double true_value(const part *t, const double p[3])
+static double true_value(const void *of, const double p[3])
 {
+    const part *t = of;
     double value = -INFINITY;
     for (int k = 0; k < 3; k++) value = fmax(value, fmax(block.lo[k] - p[k], p[k] - block.hi[k]));
     for (int i = 0; i < t->count; i++) value = fmax(value, -sweep_distance(t, i, p));
@@ -66,17 +68,9 @@ static int near_two(const part *t, const double p[3])
 
 static int true_normal(const part *t, const double p[3], double normal[3])
 {
-    const double step = 1e-4;
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        double a[3] = {p[0], p[1], p[2]}, b[3] = {p[0], p[1], p[2]};
-        a[k] -= step;
-        b[k] += step;
-        normal[k] = (true_value(t, b) - true_value(t, a)) / (2 * step);
-        square += normal[k] * normal[k];
-    }
-    for (int k = 0; k < 3; k++) normal[k] /= sqrt(square);
-    return fabs(square - 1) < 1e-3;
+    const double length = test_gradient(true_value, t, p, 1e-4, normal);
+    for (int k = 0; k < 3; k++) normal[k] /= length;
+    return fabs(length - 1) < 5e-4;
 }
 
 /* Points of the true edges that level cuts leave: where corners of the meridian went, and the rim at the block's top.
@@ -94,7 +88,8 @@ static void add_offset(const part *t, int path, double radius, double z, edges *
     for (int i = 0; i < 2 * along + 2 * around; i++) {
         double tip[3], ahead[3], behind[3];
         const int cap = i >= 2 * along ? 1 + (i - 2 * along) / around : 0;
-        const double s = cap ? cap - 1 : (double)(i / 2) / along;
+        const int pair = i / 2; /* the sides take turns */
+        const double s = cap ? cap - 1 : (double)pair / along;
         oracle_tip(p, s, tip);
         oracle_tip(p, s + 1e-6, ahead);
         oracle_tip(p, s - 1e-6, behind);

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "gradient.h"
 #include "shapes.h"
 #include "stocks.h"
 
@@ -82,29 +83,32 @@ static double true_value(const part *t, const double at[3])
     return value;
 }
 
+/* Of one face, or (-1) of the whole part. */
 static double part_value(const part *t, int number, const double at[3])
 {
+    if (number < 0) return true_value(t, at);
     double p[3], sign;
     const face *f = face_of(t, number, &sign);
     swarf_placement_point(&t->back, at, p);
     return sign * face_value(f, p);
 }
 
-/* Gradient of a face (of the whole part: -1); whether it is one of a distance, as it is not where faces meet. */
+typedef struct asked {
+    const part *part;
+    int number;
+} asked;
+
+static double asked_value(const void *of, const double p[3])
+{
+    const asked *a = of;
+    return part_value(a->part, a->number, p);
+}
+
+/* Whether the gradient is one of a distance, as it is not where faces meet. */
 static int gradient_of(const part *t, int number, const double p[3], double out[3])
 {
-    const double step = 1e-4;
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        double a[3] = {p[0], p[1], p[2]}, b[3] = {p[0], p[1], p[2]};
-        a[k] -= step;
-        b[k] += step;
-        const double rise =
-            number < 0 ? true_value(t, b) - true_value(t, a) : part_value(t, number, b) - part_value(t, number, a);
-        out[k] = rise / (2 * step);
-        square += out[k] * out[k];
-    }
-    return fabs(square - 1) < 1e-3;
+    const asked of = {t, number};
+    return fabs(test_gradient(asked_value, &of, p, 1e-4, out) - 1) < 5e-4;
 }
 
 /* The nearest point where two faces meet, and the direction of their edge. */

@@ -143,15 +143,7 @@ static void check_cases(void)
             const double away = oracle_distance(&body, &path, p);
             if (away > 1e-4 && away < 1.5 * voxel && oracle_is_smooth(&body, &path, p, away, voxel)) {
                 double gradient[3];
-                const double h = 1e-5;
-                for (int k = 0; k < 3; k++) {
-                    double a[3], b[3];
-                    memcpy(a, p, sizeof a);
-                    memcpy(b, p, sizeof b);
-                    a[k] -= h;
-                    b[k] += h;
-                    gradient[k] = (oracle_distance(&body, &path, b) - oracle_distance(&body, &path, a)) / (2 * h);
-                }
+                oracle_gradient(&body, &path, p, 1e-5, gradient);
                 const double dot =
                     -(gradient[0] * seen.normal[0] + gradient[1] * seen.normal[1] + gradient[2] * seen.normal[2]);
                 normals++;
