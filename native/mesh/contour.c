@@ -274,11 +274,12 @@ static swarf_status find_pairs(const stage *s, int first, found *out)
  * of the error that it came to. */
 static double regained_by(const stage *s)
 {
-    const double error = s->options->error_mm, least = regain_least * s->work->layout->voxel;
+    const double error = s->work->error_mm, spare = s->options->error_mm - error;
+    const double least = regain_least * s->work->layout->voxel;
     float most = 0;
     if (!(error > 0)) return least;
     for (size_t f = 0; f < s->facets->facet_count; f++) most = fmaxf(most, s->facets->facet[f].error_mm);
-    return fmin(regain_part * error, fmax(least, regain_part / (1 - regain_part) * (double)most));
+    return fmin(spare, fmax(least, spare / error * (double)most));
 }
 
 /* Join, simplify, look for facets that cut each other. */

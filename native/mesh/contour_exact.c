@@ -3,9 +3,8 @@
  *
  * The crossings are sorted into faces by what cut them and by their normals. Where there is more than one, the vertex
  * is where their planes meet; the planes are then taken again on their faces close to the point found, so that curved
- * faces meet where they truly do: at once very close, and in steps where the faces bend too much for that. What comes
- * out counts only if it lies on the surface: faces that are hidden where they would meet leave the pairs of them, and
- * these the point of the surface nearest to the middle of the crossings.
+ * faces meet where they truly do. What comes out counts only if it lies on the surface: faces that are hidden where
+ * they would meet leave the pairs of them, and these the point of the surface nearest to the middle of the crossings.
  */
 #include "mesh/contour.h"
 
@@ -24,9 +23,6 @@ static const double least_eigenvalue = 1.5e-4, first_eigenvalue = 1e-3;
 /* How near to the vertex found its planes are taken, round by round, in parts of the way to the crossings. The error
  * of a round is the bend over that way, so each is well within the next one's reach. */
 static const double approach[] = {0.5, 0.2, 0.05, 0.01};
-/* The same where faces bend so little that they are near at once, as most do; and what the bend may then be expected to
- * leave, in voxels: what Newton's steps leave elsewhere. */
-static const double quick_approach[] = {0.1, 0.03, 0.03}, well_met = 1e-4;
 /* A face near the vertex is the one at the crossings if it has turned by less than 25 degrees on the way. */
 static const double met_again_cosine = 0.906;
 /* In voxels: on the surface; where Newton's steps end. A tenth and a hundredth of what the mesh promises. */
@@ -145,8 +141,8 @@ static double apart(const double a[3], const double b[3])
     return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
 }
 
-/* Whether the point where faces meet is one of the surface, in the cell; moves it into the bounds. */
-static int is_there(const cell *c, double x[3])
+/* Move the point where faces meet into the cell: 1 when it is one of the surface, 0 when it lies elsewhere. */
+static int keep_if_there(const cell *c, double x[3])
 {
     const contour_bounds *bounds = &c->polygon->bounds;
     for (int k = 0; k < 3; k++)
@@ -154,30 +150,6 @@ static int is_there(const cell *c, double x[3])
     swarf_surface_point found;
     swarf_contour_clamp(bounds, x);
     return fabs(look(c, x, &found)) <= on_surface;
-}
-
-/* Where faces that hardly bend meet, from where their planes at the crossings do: the rank, or 1 where a face is not
- * seen at once. What a round moves the point by tells the bend, and that what the round has left. */
-static int meet_quickly(const cell *c, const face *const chosen[MOST_FACES], int count, double x[3])
-{
-    contour_plane planes[MOST_FACES];
-    double from = 1;
-    for (size_t round = 0; round < sizeof quick_approach / sizeof *quick_approach; round++) {
-        const double about[3] = {x[0], x[1], x[2]}, part = quick_approach[round], left = part * part / (from * from);
-        for (int i = 0; i < count; i++)
-            if (!take_one(c, chosen, count, i, x, part, &planes[i])) return 1;
-        const int rank = swarf_contour_meet(planes, count, about, least_eigenvalue, &c->polygon->bounds, x);
-        if (rank < 2) return 1;
-        if (apart(x, about) * left * left < well_met * well_met) return is_there(c, x) ? rank : 1;
-        swarf_contour_clamp(&c->polygon->bounds, x);
-        from = part;
-    }
-    return 1;
-}
-
-static int is_one_piece(const face *const two[MOST_FACES])
-{
-    return two[0]->move == two[1]->move && two[0]->piece == two[1]->piece;
 }
 
 /* Where the chosen faces meet in the cell: the rank, or 1 when they do not. Planes from afar may lead out of the cell
@@ -188,13 +160,6 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
     const contour_bounds *bounds = &c->polygon->bounds;
     for (int i = 0; i < count; i++) planes[i] = chosen[i]->plane;
     int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, bounds, x), seen = 0;
-    if (rank < 2) return 1;
-    swarf_contour_clamp(bounds, x);
-    const double first[3] = {x[0], x[1], x[2]};
-    /* at corners it seldom pays, and two sides of one piece may be one that bends */
-    const int quickly = c->count == 2 && !is_one_piece(chosen) ? meet_quickly(c, chosen, count, x) : 1;
-    if (quickly > 1) return quickly;
-    memcpy(x, first, sizeof first);
     const size_t rounds = sizeof approach / sizeof *approach;
     for (size_t round = 0; round < rounds && rank > 1; round++) {
         swarf_contour_clamp(bounds, x);
@@ -203,7 +168,7 @@ static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int c
         rank = swarf_contour_meet(planes, count, about, least_eigenvalue, bounds, x);
         if (seen && apart(x, about) < settled * settled && round + 2 < rounds) round = rounds - 2;
     }
-    return rank > 1 && seen && is_there(c, x) ? rank : 1;
+    return rank > 1 && seen && keep_if_there(c, x) ? rank : 1;
 }
 
 static void step_onto(const cell *c, double x[3], double value, const swarf_surface_point *found)

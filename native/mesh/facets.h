@@ -47,8 +47,8 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
 
 /** Shift vertices by `most_mm` at most, along their faces' normals and so that edges stay on them, until the surface
  *  has within it what its facets had lost; what those that lost less than `flat_mm` all over cannot bring is not asked
- * of them. Vertices with *marks SWARF_VERTEX_LOCKED (NULL: none) stay; so do those whose facets would turn. The shifts
- * are added to the facets' errors. */
+ *  of them. Vertices with *marks SWARF_VERTEX_LOCKED (NULL: none) stay; so do those whose facets would turn. The shifts
+ *  are added to the facets' errors. */
 swarf_status swarf_facets_regain(swarf_facets *facets, const uint8_t *marks, double most_mm, double flat_mm);
 
 #endif

@@ -65,7 +65,7 @@ void swarf_surface_first(const swarf_surface *surface, const double point[3], sw
 swarf_status swarf_surface_collect(swarf_surface_near *near, size_t moves, const swarf_box *where);
 
 /** The same as swarf_surface_gather() of a box within the one that `wider` was collected, gathered or narrowed for,
- * from what that holds; `wider` must stay as it is. */
+ *  from what that holds; `wider` must stay as it is. */
 swarf_status swarf_surface_narrow(swarf_surface_near *near, const swarf_surface_near *wider, const swarf_box *where);
 
 #endif
