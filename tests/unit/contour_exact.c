@@ -340,9 +340,10 @@ static swarf_program *make_program(const part *t)
 
 /* Part of the points, half of them on edges, that may be farther than the error: for cutters that leave wedges of air
  * or chip narrower than a voxel, in which no voxel's centre lies, and which end more than a cell away from the next:
- * sharp undercuts, threads. One and a half times what was seen with all motions. Without `fine` it was 0.234 for the
- * thread mill, two edges of which pass one cell all along its roots, 0.047 for the dovetail and 0.020 for the point. */
-static const double beyond_allowed[CASE_CUTTERS] = {0.001, 0.001,  0.001, 0.001, 0.001,  0.0013, 0.001,
+ * sharp undercuts, threads. One and a half times the most that was seen with ten seeds. Without `fine` it was 0.234 for
+ * the thread mill, two edges of which pass one cell all along its roots, 0.047 for the dovetail and 0.020 for the
+ * point. */
+static const double beyond_allowed[CASE_CUTTERS] = {0.001, 0.001,  0.001, 0.002, 0.001,  0.0013, 0.001,
                                                     0.001, 0.0055, 0.003, 0.008, 0.0152, 0.001,  0.0057};
 
 /* Simplified by an error, the mesh is within that of the true surface both ways. */
@@ -418,9 +419,9 @@ static void check_part(int index, motion m, test_random *random)
         CHECK(topology.closed && !topology.nonmanifold_edges && !topology.misoriented_edges && !topology.degenerate);
         CHECK(report.intersections_left == 0);
         CHECK(f.off <= 0.01);
-        /* where two edges pass one cell its vertex can only be on one; the roots of the thread are two all along, and
-         * one triangle in some thousands turns over there */
-        CHECK(f.normal_bad <= (index == THREAD_MILL));
+        /* where two edges pass one cell its vertex can only be on one, which tilts a triangle of some thousands; the
+         * roots of the thread are two all along, and up to two turn over there */
+        CHECK(f.normal_bad <= (index == THREAD_MILL ? 2 : 1));
         if (index != THREAD_MILL) CHECK(f.edge_bad * f.edge_count <= 2 + 0.02 * f.edge_count);
         if (v.edge_count > 0) CHECK(v.edge_bad > 0.5);
         if (index == THREAD_MILL && m != RAMP) check_split(stock, &options, mesh, &report);
