@@ -3,6 +3,7 @@
  * near vertices one after the other, so that a small table stays in cache. */
 #include "base/weld.h"
 
+#include "base/mix.h"
 #include "base/status.h"
 
 #include <stdlib.h>
@@ -12,10 +13,7 @@
 
 static uint64_t hash_position(const uint32_t bits[3])
 {
-    uint64_t h = bits[0] * 0x9e3779b97f4a7c15u;
-    h = (h ^ (h >> 32) ^ bits[1]) * 0xbf58476d1ce4e5b9u;
-    h = (h ^ (h >> 32) ^ bits[2]) * 0x94d049bb133111ebu;
-    return h ^ (h >> 29);
+    return swarf_mix_in(swarf_mix_in(swarf_mix_in(0, bits[0]), bits[1]), bits[2]);
 }
 
 static void read_bits(const float *p, uint32_t bits[3])

@@ -2,6 +2,7 @@
 /* Clusters: samples beyond tolerance are put into cells of two voxels, apart for excess and gouge; cells that are
  * neighbours (27 around each) belong together. Volumes are shared out by slots: from those that hold samples of a
  * cluster through their neighbours that have an excess (or gouge) of their own. */
+#include "base/mix.h"
 #include "base/status.h"
 #include "compare/compare.h"
 #include "stock/leaf.h"
@@ -32,16 +33,10 @@ struct clusters {
     size_t count;
 };
 
-static size_t hash_key(uint64_t key)
-{
-    key = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
-    return (size_t)(key ^ key >> 29);
-}
-
 /* Place of the entry with a key, or of where it would go. */
 static uint32_t *find_place(const struct table *table, uint64_t key)
 {
-    for (size_t at = hash_key(key) & (table->size - 1);; at = (at + 1) & (table->size - 1))
+    for (size_t at = swarf_mix(key) & (table->size - 1);; at = (at + 1) & (table->size - 1))
         if (table->places[at] == UINT32_MAX || table->entries[table->places[at]].key == key) return &table->places[at];
 }
 

@@ -3,6 +3,7 @@
 #include "mesh/crease.h"
 
 #include "base/memory.h"
+#include "base/mix.h"
 #include "base/status.h"
 
 #include <stdlib.h>
@@ -21,7 +22,7 @@ static size_t find(const swarf_crease_memo *memo, const float corners[12])
     uint32_t bits[12];
     uint64_t hash = 0;
     memcpy(bits, corners, sizeof bits);
-    for (int k = 0; k < 12; k++) hash = (hash ^ bits[k]) * UINT64_C(0x9e3779b97f4a7c15) ^ hash >> 29;
+    for (int k = 0; k < 12; k++) hash = swarf_mix_in(hash, bits[k]);
     size_t at = (size_t)(hash >> 20) & (memo->slot_count - 1);
     while (memo->slots[at] && memcmp(memo->splits[memo->slots[at] - 1].corners, corners, sizeof bits) != 0)
         at = (at + 1) & (memo->slot_count - 1);

@@ -5,6 +5,7 @@
  * costs time. */
 #include "mesh/known.h"
 
+#include "base/mix.h"
 #include "base/parallel.h"
 #include "base/status.h"
 
@@ -33,7 +34,7 @@ static size_t first_slot(const swarf_facets_known *known, const float corners[9]
     uint32_t bits[9];
     uint64_t hash = 0;
     memcpy(bits, corners, sizeof bits);
-    for (int k = 0; k < 9; k++) hash = (hash ^ bits[k]) * UINT64_C(0x9e3779b97f4a7c15) ^ hash >> 29;
+    for (int k = 0; k < 9; k++) hash = swarf_mix_in(hash, bits[k]);
     return (size_t)(hash >> 20) & (known->slot_count - 1);
 }
 

@@ -5,6 +5,7 @@
  * as there are lanes for the pack from `base` on. Places of a ring come with the first again after the last, and with
  * room for a whole pack from there.
  */
+#include "base/least.h"
 #include "mesh/ring.h"
 #include "sweep/pack.h"
 
@@ -65,17 +66,6 @@ INLINE packs new_normal(packs old, packs before, packs after)
     return (packs){old.x + before.x - after.x, old.y + before.y - after.y, old.z + before.z - after.z};
 }
 
-/* fmin() and fmax() are calls, for the sake of NaNs that cannot come here. */
-INLINE double least_of(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-INLINE double most_of(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 INLINE uint32_t whole_ring(const ring *around)
 {
     return UINT32_MAX >> (RING_MOST - around->count);
@@ -115,8 +105,8 @@ static double worst_shape(const ring *around)
     double worst = 1;
     for (int base = 0; base < around->count; base += PACK) {
         const packs a = load3(around->at, base), b = load3(around->at, base + 1), n = load3(around->normal, base);
-        worst =
-            least_of(worst, pack_least(lanes_of(all, base), shape_of(dot(n, n), dot(a, a) + dot(b, b) + apart(a, b))));
+        worst = swarf_least(worst,
+                            pack_least(lanes_of(all, base), shape_of(dot(n, n), dot(a, a) + dot(b, b) + apart(a, b))));
     }
     return worst;
 }
@@ -135,7 +125,7 @@ static void look_flat(ring *around, double limit)
         bent |= own & (pack_below(differ, pack_size(n.x - true_normal.x)) |
                        pack_below(differ, pack_size(n.y - true_normal.y)) |
                        pack_below(differ, pack_size(n.z - true_normal.z)));
-        most = most_of(most, pack_most(own, pack_size(dot(at, true_normal))));
+        most = swarf_most(most, pack_most(own, pack_size(dot(at, true_normal))));
     }
     most /= 32767;
     around->slab = !bent && most <= flat_part * limit ? most : -1;
@@ -247,7 +237,7 @@ INLINE double where_they_pass(const ring *around, unsigned some, int j, int k, i
     const packs part = {u * at.x - w * around->at[0][j] - v * around->at[0][k],
                         u * at.y - w * around->at[1][j] - v * around->at[1][k],
                         u * at.z - w * around->at[2][j] - v * around->at[2][k]};
-    return most_of(0, pack_most(some, dot(part, part)));
+    return swarf_most(0, pack_most(some, dot(part, part)));
 }
 
 /* Squared greatest distance between the edges to the middle that go and the edges to u = ring vertex j that come, where
@@ -269,7 +259,8 @@ static double between_edges(const ring *around, int j, double enough)
         if (beside >> k & 1) continue;
         const uint32_t some = (sides[0] >> k & 1 ? sides[0] : sides[1] >> k & 1 ? sides[1] : 0) & ~(1U << k);
         for (int base = 0; base < n; base += PACK)
-            if (lanes_of(some, base)) most = most_of(most, where_they_pass(around, lanes_of(some, base), j, k, base));
+            if (lanes_of(some, base))
+                most = swarf_most(most, where_they_pass(around, lanes_of(some, base), j, k, base));
     }
     return most;
 }
@@ -298,12 +289,12 @@ static int look_at_facets(ring *around, int j, double *shape, double *nearest)
             if (around->shape < 0) around->shape = worst_shape(around);
             if (needles & pack_up_to(shapes, pack_of(around->shape))) return 0;
         }
-        *shape = least_of(*shape, pack_least(own, shapes));
+        *shape = swarf_least(*shape, pack_least(own, shapes));
         if (around->slab >= 0) continue;
         const unsigned over = own & pack_up_to(nought, dot(old, normal)) & pack_up_to(nought, dot(before, normal)) &
                               pack_up_to(dot(after, normal), nought);
         const pack away = dot(u, normal);
-        if (over) *nearest = least_of(*nearest, pack_least(over, away * away / square));
+        if (over) *nearest = swarf_least(*nearest, pack_least(over, away * away / square));
     }
     return 1;
 }
@@ -319,10 +310,10 @@ static double look_at_edges(const ring *around, int j, double nearest, double sp
     const int look = nearest > spare;
     for (int base = 0; base < around->count; base += PACK) {
         const pack away = to_segments(around, j, base);
-        if (look) nearest = least_of(nearest, pack_least(lanes_of(others, base), away));
-        most = most_of(most, pack_most(lanes_of(crease, base), away));
+        if (look) nearest = swarf_least(nearest, pack_least(lanes_of(others, base), away));
+        most = swarf_most(most, pack_most(lanes_of(crease, base), away));
     }
-    return most_of(nearest, most);
+    return swarf_most(nearest, most);
 }
 
 static int try_draw(ring *around, int j, double limit, double least, double *error, double *score)
@@ -341,9 +332,9 @@ static int try_draw(ring *around, int j, double limit, double least, double *err
     *error = around->error + sqrt(nearest);
     if (*error > limit || ring_score(shape, *error, limit) <= least) return 0;
     /* beyond this error the score is not above `least` either */
-    const double last = least > 0 ? least_of(limit, limit * (1 - least / sqrt(shape)) / ring_score_error) : limit;
+    const double last = least > 0 ? swarf_least(limit, limit * (1 - least / sqrt(shape)) / ring_score_error) : limit;
     const double enough = (last - around->error) * (last - around->error);
-    *error = around->error + sqrt(most_of(nearest, between_edges(around, j, enough)));
+    *error = around->error + sqrt(swarf_most(nearest, between_edges(around, j, enough)));
     *score = ring_score(shape, *error, limit);
     return *error <= limit && *score > least;
 }

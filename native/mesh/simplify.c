@@ -4,6 +4,7 @@
  * matter, so the result is the same for any number of threads. */
 #include "mesh/simplify.h"
 
+#include "base/mix.h"
 #include "base/parallel.h"
 #include "base/status.h"
 
@@ -176,12 +177,6 @@ void swarf_facets_memo_free(swarf_facets_memo *memo)
     memo->pass = NULL;
 }
 
-static uint64_t mix(uint64_t print, uint64_t word)
-{
-    print = (print ^ word) * UINT64_C(0x9e3779b97f4a7c15);
-    return print ^ print >> 29;
-}
-
 /* A hash in four strands, as each step waits for the one before in its own. */
 typedef struct strands {
     uint64_t at[4];
@@ -189,7 +184,7 @@ typedef struct strands {
 
 static void mix_four(strands *p, const uint64_t words[4])
 {
-    for (int k = 0; k < 4; k++) p->at[k] = mix(p->at[k], words[k]);
+    for (int k = 0; k < 4; k++) p->at[k] = swarf_mix_in(p->at[k], words[k]);
 }
 
 static void mix_all(strands *p, const void *bytes, size_t size)
@@ -223,7 +218,7 @@ static uint64_t print_of(const simplify_region *r)
         memcpy(&words[3], here->normal, sizeof here->normal);
         mix_four(&p, words);
     }
-    return mix(mix(mix(p.at[0], p.at[1]), p.at[2]), p.at[3]);
+    return swarf_mix_in(swarf_mix_in(swarf_mix_in(p.at[0], p.at[1]), p.at[2]), p.at[3]);
 }
 
 /* Without memory for it there is nothing to recall. */

@@ -9,6 +9,7 @@
  * Whether what was written is closed is told by a sum over all directed edges of a number that is its own negative for
  * the edge turned round: it is 0 when every edge is there both ways. */
 #include "base/memory.h"
+#include "base/mix.h"
 #include "base/parallel.h"
 #include "base/status.h"
 #include "mesh/contour.h"
@@ -41,13 +42,6 @@ typedef struct streaming {
 
 /* ---- the sum over edges ------------------------------------------------------------------------------------------ */
 
-static uint64_t mix(uint64_t x)
-{
-    x = (x ^ x >> 30) * UINT64_C(0xbf58476d1ce4e5b9); /* splitmix64 */
-    x = (x ^ x >> 27) * UINT64_C(0x94d049bb133111eb);
-    return x ^ x >> 31;
-}
-
 static uint64_t hash_point(const float *p)
 {
     uint64_t hash = 0;
@@ -55,7 +49,7 @@ static uint64_t hash_point(const float *p)
         const float value = p[k] + 0.0f; /* -0 is 0 */
         uint32_t bits;
         memcpy(&bits, &value, sizeof bits);
-        hash = mix(hash + bits + 1);
+        hash = swarf_mix(hash + bits + 1);
     }
     return hash;
 }
@@ -67,7 +61,7 @@ static void add_edges(streaming *s, const swarf_facets *facets)
         for (int k = 0; k < 3; k++) hash[k] = hash_point(facets->xyz + 3 * (size_t)facets->facet[f].v[k]);
         for (int k = 0; k < 3; k++) {
             const uint64_t a = hash[k], b = hash[(k + 1) % 3];
-            s->edges += a < b ? mix(a + mix(b)) : a > b ? 0 - mix(b + mix(a)) : 0;
+            s->edges += a < b ? swarf_mix(a + swarf_mix(b)) : a > b ? 0 - swarf_mix(b + swarf_mix(a)) : 0;
         }
     }
 }

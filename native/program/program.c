@@ -13,6 +13,7 @@
 #include "program/program.h"
 
 #include "base/memory.h"
+#include "base/mix.h"
 #include "base/status.h"
 
 #include <math.h>
@@ -162,10 +163,7 @@ static uint64_t section_hash(const swarf_section *section)
 {
     uint64_t words[sizeof *section / 8], hash = 0;
     memcpy(words, section, sizeof words);
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        hash = (hash ^ words[i]) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-    }
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) hash = swarf_mix_in(hash, words[i]);
     return hash;
 }
 _Static_assert(sizeof(swarf_section) == 32, "sections have no padding to hash");

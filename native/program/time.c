@@ -7,6 +7,7 @@
  * (what can be reached): two passes over the moves, no memory but the result's. The array of seconds holds the
  * entry speeds between them.
  */
+#include "base/least.h"
 #include "base/status.h"
 #include "program/program.h"
 
@@ -33,24 +34,19 @@ swarf_machine_limits swarf_machine_limits_default(void)
                                   0.0};
 }
 
-static double least(double a, double b)
-{
-    return a < b ? a : b;
-}
-
 /* The most of a quantity along `direction` that keeps each axis within its own limit; 0 in a limit: without one. */
 static double along(const double direction[3], const double limits[3])
 {
     double most = INFINITY;
     for (int k = 0; k < 3; k++)
-        if (fabs(direction[k]) > 1e-9 && limits[k] > 0.0) most = least(most, limits[k] / fabs(direction[k]));
+        if (fabs(direction[k]) > 1e-9 && limits[k] > 0.0) most = swarf_least(most, limits[k] / fabs(direction[k]));
     return most;
 }
 
 static void line_way(const swarf_path *path, const double speeds[3], const swarf_machine_limits *limits, way *out)
 {
     for (int k = 0; k < 3; k++) out->in[k] = out->out[k] = (path->end[k] - path->start[k]) / out->length;
-    out->speed = least(out->speed, along(out->in, speeds) / 60.0);
+    out->speed = swarf_least(out->speed, along(out->in, speeds) / 60.0);
     out->acceleration = along(out->in, limits->acceleration_mm_s2);
 }
 
@@ -66,7 +62,7 @@ static void arc_way(const swarf_path *path, const double speeds[3], const swarf_
         const double *p = i ? path->end : path->start;
         double *direction = i ? out->out : out->in;
         const double u = p[a] - c[a], v = p[b] - c[b], r = hypot(u, v);
-        radius = i ? least(radius, r) : r;
+        radius = i ? swarf_least(radius, r) : r;
         direction[a] = r > 0.0 ? -turn * flat * v / r : 0.0;
         direction[b] = r > 0.0 ? turn * flat * u / r : 0.0;
         direction[n] = rise;
@@ -74,9 +70,9 @@ static void arc_way(const swarf_path *path, const double speeds[3], const swarf_
     double all[3];
     all[a] = all[b] = flat;
     all[n] = rise;
-    out->speed = least(out->speed, along(all, speeds) / 60.0);
+    out->speed = swarf_least(out->speed, along(all, speeds) / 60.0);
     out->acceleration = along(all, limits->acceleration_mm_s2);
-    if (flat > 0.0) out->speed = least(out->speed, sqrt(out->acceleration * radius) / flat);
+    if (flat > 0.0) out->speed = swarf_least(out->speed, sqrt(out->acceleration * radius) / flat);
 }
 
 static void make_way(const swarf_program *program, size_t index, const swarf_machine_limits *limits, way *out)
@@ -106,7 +102,7 @@ static void make_way(const swarf_program *program, size_t index, const swarf_mac
     if (!swarf_program_move_axes(program, index, from, to)) return;
     for (int k = 0; k < 3; k++) turn += (to[k] - from[k]) * (to[k] - from[k]);
     out->length = sqrt(turn);
-    out->speed = least(out->speed, limits->rotary_deg_min / 60.0);
+    out->speed = swarf_least(out->speed, limits->rotary_deg_min / 60.0);
     out->acceleration = INFINITY;
     out->moves = out->length > 0.0;
 }
@@ -121,12 +117,12 @@ static double corner_speed(const way *before, const way *after, double junction)
         sum += fabs(before->out[k]) + fabs(after->in[k]);
     }
     if (!(sum > 0.0)) return 0.0;
-    const double most = least(before->speed, after->speed);
+    const double most = swarf_least(before->speed, after->speed);
     if (cosine < -0.999999) return most;                       /* straight on */
     const double half = sqrt(fmax(0.0, 0.5 * (1.0 - cosine))); /* sine of half the angle between them */
-    const double acceleration = least(before->acceleration, after->acceleration);
+    const double acceleration = swarf_least(before->acceleration, after->acceleration);
     if (half >= 1.0) return most;
-    return least(most, sqrt(acceleration * junction * half / (1.0 - half)));
+    return swarf_least(most, sqrt(acceleration * junction * half / (1.0 - half)));
 }
 
 /* The most that can be reached over a length from a speed. */
@@ -140,7 +136,7 @@ static double seconds_of(const way *w, double in, double out)
     if (!w->moves) return w->pause;
     if (!isfinite(w->acceleration)) return isfinite(w->speed) ? w->length / w->speed : 0.0;
     double peak = sqrt(w->acceleration * w->length + 0.5 * (in * in + out * out));
-    peak = least(peak, w->speed);
+    peak = swarf_least(peak, w->speed);
     if (!(peak > 0.0)) return 0.0;
     const double ramps = (2.0 * peak * peak - in * in - out * out) / (2.0 * w->acceleration);
     return (2.0 * peak - in - out) / w->acceleration + fmax(0.0, w->length - ramps) / peak;
@@ -189,7 +185,8 @@ swarf_status swarf_program_times(const swarf_program *program, const swarf_machi
         memset(&before, 0, sizeof before);
         if (i) make_way(program, i - 1, limits, &before);
         const double braked = here.moves ? reach(out, here.acceleration, here.length) : 0.0;
-        seconds[i] = out = least(least(braked, here.speed), corner_speed(&before, &here, limits->junction_mm));
+        seconds[i] = out =
+            swarf_least(swarf_least(braked, here.speed), corner_speed(&before, &here, limits->junction_mm));
     }
     double in = 0.0;
     if (count) make_way(program, 0, limits, &here);
@@ -197,7 +194,7 @@ swarf_status swarf_program_times(const swarf_program *program, const swarf_machi
         memset(&next, 0, sizeof next);
         if (i + 1 < count) make_way(program, i + 1, limits, &next);
         const double wanted = i + 1 < count ? seconds[i + 1] : 0.0;
-        const double end = here.moves ? least(wanted, reach(in, here.acceleration, here.length)) : 0.0;
+        const double end = here.moves ? swarf_least(wanted, reach(in, here.acceleration, here.length)) : 0.0;
         seconds[i] = seconds_of(&here, in, end);
         in = end;
     }

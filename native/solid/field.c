@@ -5,6 +5,7 @@
  * its voxels, when they are many by looking in the tree. */
 #include "solid/field.h"
 
+#include "base/least.h"
 #include "base/memory.h"
 #include "base/status.h"
 #include "solid/solid.h"
@@ -72,11 +73,6 @@ static void ends_of(const struct cube *cube, double lo[3], double hi[3])
     }
 }
 
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 static double along(const struct side *side, const double point[3])
 {
     return side->normal[0] * point[0] + side->normal[1] * point[1] + side->normal[2] * point[2] - side->offset;
@@ -100,7 +96,7 @@ static double least_distance(const candidate *c, const struct cube *cube)
 {
     double least = fabs(along(&c->plane, cube->middle)) - c->plane.spread * cube->half;
     for (int i = 0; i < 3; i++)
-        least = larger(least, along(&c->edge[i], cube->middle) - c->edge[i].spread * cube->half);
+        least = swarf_most(least, along(&c->edge[i], cube->middle) - c->edge[i].spread * cube->half);
     return least;
 }
 
@@ -139,8 +135,8 @@ static swarf_nearest closest_of(const struct walker *w, const candidate *list, s
         const candidate *c = &list[i];
         const double away = along(&c->plane, point);
         double beyond = along(&c->edge[0], point);
-        beyond = larger(beyond, along(&c->edge[1], point));
-        beyond = larger(beyond, along(&c->edge[2], point));
+        beyond = swarf_most(beyond, along(&c->edge[1], point));
+        beyond = swarf_most(beyond, along(&c->edge[2], point));
         const double least = away * away + (beyond > 0 ? beyond * beyond : 0);
         if (least >= nearest.square) continue;
         if (beyond <= 0 && c->area > 0) {
@@ -178,7 +174,7 @@ static void fill_same(struct walker *w, const int32_t at[3], int edge, double va
 /* How far to look for what is not flat. */
 static double flat_limit(const struct walker *w, const struct cube *cube, double away)
 {
-    const double limit = larger(away, w->field->reach);
+    const double limit = swarf_most(away, w->field->reach);
     return limit < away + cube->radius ? limit : away + cube->radius;
 }
 

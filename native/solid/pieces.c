@@ -11,6 +11,7 @@
 #include "solid/pieces.h"
 
 #include "base/memory.h"
+#include "base/mix.h"
 #include "base/parallel.h"
 #include "base/status.h"
 
@@ -255,14 +256,11 @@ static swarf_status cut_by_triangle(struct knife *knife, size_t other)
     return SWARF_OK;
 }
 
-/* The next number of a row that looks random (G. L. Steele et al., "Fast splittable pseudorandom number generators",
- * 2014). */
+/* The next number of a row that looks random. */
 static uint64_t next_random(uint64_t *state)
 {
-    uint64_t z = *state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
+    *state += 0x9e3779b97f4a7c15u;
+    return swarf_mix(*state);
 }
 
 /* Cut the triangle at knife->place along all others that it meets. */

@@ -2,6 +2,7 @@
 /* Making a surface, and its first shape. */
 #include "surface/surface.h"
 
+#include "base/least.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/placement.h"
@@ -50,7 +51,7 @@ void swarf_surface_first(const swarf_surface *surface, const double point[3], sw
         double most = -INFINITY, square = 0;
         for (int k = 0; k < 3; k++) {
             const double below = surface->lo[k] - point[k], above = point[k] - surface->hi[k];
-            const double away = below > above ? below : above; /* fmax() is a call */
+            const double away = swarf_most(below, above);
             if (away > most) {
                 most = away;
                 out->piece = 2 * k + (above > below);

@@ -8,6 +8,7 @@
  */
 #include "surface/trace.h"
 
+#include "base/least.h"
 #include "program/arc.h"
 
 #include <math.h>
@@ -24,17 +25,6 @@ static const double settled = 1e-10, apart = 1e-6;
 static double clamp(double value, double lo, double hi)
 {
     return value < lo ? lo : value > hi ? hi : value;
-}
-
-/* fmin() and fmax() are calls, for the sake of NaNs that cannot come here. */
-static double least_of(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double most_of(double a, double b)
-{
-    return a > b ? a : b;
 }
 
 /* ---- making ------------------------------------------------------------------------------------------------------ */
@@ -204,7 +194,7 @@ static double piece_value(const swarf_exact_piece *p, double rho, double height,
 /* Offer a touch; the nearest stays. */
 static void offer(swarf_touch *best, double value, double raw, const double gradient[3], double t, int32_t piece)
 {
-    best->raw = least_of(best->raw, raw);
+    best->raw = swarf_least(best->raw, raw);
     if (value >= best->value) return;
     best->value = value;
     memcpy(best->gradient, gradient, sizeof best->gradient);
@@ -296,7 +286,7 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
     const double along = clamp(s, 0, trace->run), beyond = s - along, rho = sqrt(beyond * beyond + w * w);
     const double low = bottom - z, high = z - (top + trace->rise);
     if (most && (rho - R >= *most || low >= *most || high >= *most)) return;
-    const double chord2 = most_of(0, R * R - w * w), chord = sqrt(chord2);
+    const double chord2 = swarf_most(0, R * R - w * w), chord = sqrt(chord2);
     const double norm = sqrt(chord2 + m * m * R * R), scale = chord / norm;
     const double under = scale * ((s - chord) * m + bottom - z), over = scale * (z - top - (s + chord) * m);
     double value = rho - R, gs = rho > 0 ? beyond / rho : 1, gw = rho > 0 ? w / rho : 0, gz = 0, at = along;
@@ -339,7 +329,7 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
         gs = sense * m * im * n[1];
         gw = n[0];
         gz = -sense * im * n[1];
-        at = clamp(s - rim * gs - sense * sqrt(most_of(0, R * R - foot * foot)), 0, trace->run);
+        at = clamp(s - rim * gs - sense * sqrt(swarf_most(0, R * R - foot * foot)), 0, trace->run);
         touched = up ? piece + 2 : piece;
     }
     const double gradient[3] = {gs * trace->ux - gw * trace->uy, gs * trace->uy + gw * trace->ux, gz};
@@ -350,9 +340,9 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
     }
     const double plane_under = ((s - R) * m + bottom - z) * im, plane_over = (z - top - (s + R) * m) * im;
     double raw = rho - R, ts = rho > 0 ? beyond / rho : 1, tw = rho > 0 ? w / rho : 0, tz = 0;
-    const double flat = most_of(low, high), plane = most_of(plane_under, plane_over);
+    const double flat = swarf_most(low, high), plane = swarf_most(plane_under, plane_over);
     if (flat > raw || plane > raw) {
-        raw = most_of(flat, plane);
+        raw = swarf_most(flat, plane);
         const int up = flat >= plane ? high > low : plane_over > plane_under;
         ts = flat >= plane ? 0 : up ? -m * im : m * im;
         tw = 0;
@@ -457,7 +447,7 @@ static void search_convex(const struct search *search, struct moment a, struct m
     }
     double bound, t = tangents_meet(&a, &b, &bound);
     /* bisection every other step halves the bracket at least that often: 2^-40 of a move is less than settled */
-    for (int step = 0; step < 80 && least_of(a.value, b.value) - bound > settled; step++) {
+    for (int step = 0; step < 80 && swarf_least(a.value, b.value) - bound > settled; step++) {
         const struct moment m = at_moment(search, step & 1 ? 0.5 * (a.t + b.t) : t);
         if (m.slope < 0)
             a = m;
@@ -472,11 +462,11 @@ static void search_convex(const struct search *search, struct moment a, struct m
         square += gradient[k] * gradient[k];
     }
     /* deep inside, opposite sides of the cutter cancel: no more than tenfold */
-    const double length = most_of(sqrt(square), 0.1);
+    const double length = swarf_most(sqrt(square), 0.1);
     for (int k = 0; k < 3; k++) gradient[k] /= length;
     struct moment found = part < 0.5 ? a : b;
     found.value = bound;
-    offer_moment(search, &found, bound / least_of(length, 1), gradient, t);
+    offer_moment(search, &found, bound / swarf_least(length, 1), gradient, t);
 }
 
 /* Least value on a stretch of a curve, unless it is above what is known; the bend says by how much phi may fall short
