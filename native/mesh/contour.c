@@ -77,110 +77,10 @@ static swarf_status join_one(void *context, size_t index)
     return swarf_contour_is_within(work, block, 1) ? swarf_contour_join(work, block) : SWARF_OK;
 }
 
-static swarf_status number_vertices(contour *work)
+static swarf_status join_again(void *context, size_t index)
 {
-    size_t vertices = 0;
-    for (size_t i = 0; i < work->block_count; i++) {
-        work->blocks[i].vertex_first = vertices;
-        vertices += work->blocks[i].left_count;
-    }
-    if (vertices >= SWARF_CENTRE)
-        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: %zu vertices are more than a mesh can number; use larger voxels",
-                          vertices);
-    return SWARF_OK;
-}
-
-typedef struct gathering {
-    contour *work;
-    swarf_facets *out;
-    size_t vertices; /* of cells; centres come after them */
-} gathering;
-
-static swarf_status gather_one(void *context, size_t index)
-{
-    const gathering *g = context;
-    const contour_block *block = &g->work->blocks[index];
-    float *xyz = g->out->xyz + 3 * block->vertex_first;
-    if (block->left)
-        for (uint32_t i = 0; i < block->left_count; i++)
-            memcpy(xyz + 3 * (size_t)i, block->vertices[block->left[i]].xyz, 12);
-    else if (block->left_count) /* none beyond the band */
-        memcpy(xyz, block->vertices, block->left_count * 12);
-    if (block->centre_count)
-        memcpy(g->out->xyz + 3 * (g->vertices + block->centre_first), block->centres, block->centre_count * 12);
-    for (size_t f = 0; f < block->facet_count; f++) {
-        swarf_facet facet = block->facets[f];
-        facet.beyond = !swarf_contour_is_within(g->work, block, 0);
-        facet.before = g->work->band && block->ijk[0] > 0 && block->ijk[0] == g->work->band->first;
-        for (int k = 0; k < 3; k++)
-            if (facet.v[k] & SWARF_CENTRE)
-                facet.v[k] = (uint32_t)(g->vertices + block->centre_first + (facet.v[k] & ~SWARF_CENTRE));
-        g->out->facet[block->facet_first + f] = facet;
-    }
-    return SWARF_OK;
-}
-
-/* The blocks' vertices and facets as one surface. */
-static swarf_status gather(contour *work, swarf_facets *out)
-{
-    gathering g = {work, out, 0};
-    size_t centres = 0, facets = 0;
-    for (size_t i = 0; i < work->block_count; i++) {
-        contour_block *block = &work->blocks[i];
-        block->centre_first = centres;
-        block->facet_first = facets;
-        centres += block->centre_count;
-        facets += block->facet_count;
-        g.vertices += block->left_count;
-    }
-    swarf_facets_free(out);
-    out->vertex_count = g.vertices + centres;
-    out->facet_count = facets;
-    if (out->vertex_count >= UINT32_MAX)
-        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: %zu vertices are more than a mesh can number; use larger voxels",
-                          out->vertex_count);
-    out->xyz = malloc((3 * out->vertex_count + 1) * sizeof *out->xyz);
-    out->facet = malloc((facets + 1) * sizeof *out->facet);
-    if (!out->xyz || !out->facet)
-        return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for %zu triangles", facets);
-    return swarf_parallel_for(work->block_count, gather_one, &g, NULL, 0, 1);
-}
-
-/* Whether facets end at the vertices of these cells: those beside the planes between bands, and the last ones joined.
- */
-static int is_border(const contour *work, const contour_block *block, int x)
-{
-    const int32_t end = block->ijk[0] + SWARF_LEAF_DIM;
-    return work->band && x == SWARF_LEAF_DIM - 1 &&
-           (block->finished || end == work->band->end || end == work->band->end + SWARF_LEAF_DIM);
-}
-
-/* Marks of vertices: those of noted cells are not to be left out, nor are centres where something was amiss already. */
-static uint8_t *mark_vertices(const contour *work, const swarf_facets *facets)
-{
-    uint8_t *marks = calloc(facets->vertex_count + 1, 1);
-    if (!marks) return NULL;
-    size_t cells = 0;
-    for (size_t i = 0; i < work->block_count; i++) {
-        const contour_block *block = &work->blocks[i];
-        cells += block->left_count;
-        uint32_t next = 0;
-        if (block->left_count == 0) continue; /* beyond the band */
-        for (int x = 0; x < 8; x++)
-            for (uint64_t word = block->cell_mask[x]; word; word &= word - 1, next++) {
-                if (!is_border(work, block, x) && !(block->keep_mask[x] >> __builtin_ctzll(word) & 1)) continue;
-                const contour_cell *cell = &block->cells[next];
-                for (uint32_t v = cell->first; v < cell->first + work->table.entry[cell->config][cell->flip].count; v++)
-                    marks[block->vertex_first + (block->tile ? block->tile[v] & ~SWARF_TILED : v)] |=
-                        SWARF_VERTEX_LOCKED;
-            }
-    }
-    for (size_t i = 0; i < work->block_count; i++) {
-        const contour_block *block = &work->blocks[i];
-        if (work->band || block->amiss)
-            memset(marks + cells + block->centre_first, SWARF_VERTEX_LOCKED, block->centre_count);
-    }
-    return marks;
+    const contour *work = context;
+    return work->blocks[index].touched ? join_one(context, index) : SWARF_OK;
 }
 
 /* Put the finished facets of other bands behind those of this one, where they share vertices by their places. */
@@ -214,7 +114,8 @@ static swarf_status append_below(const swarf_facets *below, swarf_facets *facets
         return status;
     }
     swarf_facets_free(facets);
-    *facets = (swarf_facets){xyz, all, facet, count + below->facet_count};
+    *facets =
+        (swarf_facets){.xyz = xyz, .vertex_count = all, .facet = facet, .facet_count = count + below->facet_count};
     return SWARF_OK;
 }
 
@@ -288,14 +189,12 @@ static swarf_status attempt(const stage *s, int first, found *out)
     contour *work = s->work;
     const double voxel = work->layout->voxel;
     SWARF_TRY(swarf_parallel_for(work->block_count, first ? tile_one : tile_again, work, NULL, 0, 1));
-    SWARF_TRY(number_vertices(work));
-    SWARF_TRY(swarf_parallel_for(work->block_count, join_one, work, first ? s->progress : NULL, 0.6, 0.7));
-    SWARF_TRY(gather(work, s->facets));
+    SWARF_TRY(swarf_parallel_for(work->block_count, first ? join_one : join_again, work, first ? s->progress : NULL,
+                                 0.6, 0.7));
+    uint8_t *marks = NULL;
+    SWARF_TRY(swarf_contour_gather(work, NULL, s->facets, first && !work->band ? NULL : &marks));
     for (size_t i = 0; first && i < work->block_count; i++)
         if (swarf_contour_is_within(work, &work->blocks[i], 0)) s->report->full_triangles += work->blocks[i].full_count;
-    const int keeps = !first || work->band;
-    uint8_t *marks = keeps ? mark_vertices(work, s->facets) : NULL;
-    if (keeps && !marks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     const int fine = s->options->fine && work->surface;
     swarf_status status = SWARF_OK;
     if (fine) /* later attempts can be broken off, but get no further */
@@ -314,60 +213,6 @@ static swarf_status attempt(const stage *s, int first, found *out)
     return find_pairs(s, first, out);
 }
 
-/* Facets of blocks where care is taken, in and above the cells noted; those of others are as if there were none. */
-static swarf_status join_kept(void *context, size_t index)
-{
-    contour *work = context;
-    contour_block *block = &work->blocks[index];
-    uint64_t kept = 0;
-    for (int c = 0; c < 8 && block->touched; c++) {
-        const int32_t corner[3] = {block->ijk[0] - (c >> 2) * SWARF_LEAF_DIM,
-                                   block->ijk[1] - (c >> 1 & 1) * SWARF_LEAF_DIM,
-                                   block->ijk[2] - (c & 1) * SWARF_LEAF_DIM};
-        const contour_block *near = swarf_contour_block_at(work, corner);
-        for (int x = 0; near && x < 8; x++) kept |= near->keep_mask[x];
-    }
-    if (kept) return join_one(context, index);
-    block->facet_count = block->full_count = block->centre_count = 0;
-    return SWARF_OK;
-}
-
-/* Note where facets of cells that care was taken of cut each other, with all vertices there; returns their pairs. */
-static swarf_status look_closely(const stage *s, size_t *count)
-{
-    contour *work = s->work;
-    swarf_facets *facets = s->facets;
-    const double error_mm = work->error_mm;
-    work->error_mm = 0; /* no tiles */
-    const swarf_status status = swarf_parallel_for(work->block_count, tile_again, work, NULL, 0, 1);
-    work->error_mm = error_mm;
-    SWARF_TRY(status);
-    SWARF_TRY(number_vertices(work));
-    SWARF_TRY(swarf_parallel_for(work->block_count, join_kept, work, NULL, 0, 1));
-    SWARF_TRY(gather(work, facets));
-    swarf_facets_snap(facets, work->band ? work->band->step : 0);
-    uint8_t *marks = mark_vertices(work, facets);
-    if (!marks) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
-    size_t kept = 0;
-    for (size_t f = 0; f < facets->facet_count; f++) {
-        const uint32_t *v = facets->facet[f].v;
-        if ((marks[v[0]] | marks[v[1]] | marks[v[2]]) & SWARF_VERTEX_LOCKED) facets->facet[kept++] = facets->facet[f];
-    }
-    facets->facet_count = kept;
-    free(marks);
-    swarf_facet_pair *pairs;
-    size_t all;
-    SWARF_TRY(swarf_facets_intersect(facets, NULL, NULL, 0, 1, &pairs, &all));
-    *count = 0;
-    for (size_t i = 0; i < all; i++) {
-        if (facets->facet[pairs[i].a].beyond && facets->facet[pairs[i].b].beyond) continue;
-        swarf_contour_note(work, facets, &pairs[i]);
-        ++*count;
-    }
-    free(pairs);
-    return SWARF_OK;
-}
-
 /* Take care of the cells noted, and of those that then still have facets that cut each other: a look at them alone
  * costs little beside an attempt of the whole. */
 static swarf_status take_care(const stage *s)
@@ -380,7 +225,7 @@ static swarf_status take_care(const stage *s)
         SWARF_TRY(swarf_progress_report(s->progress, 0.99));
         SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, NULL, 0, 1));
         if (look == CLOSE_LOOKS) return SWARF_OK;
-        SWARF_TRY(look_closely(s, &count));
+        SWARF_TRY(swarf_contour_look(work, &count));
         if (count == 0) return SWARF_OK;
         swarf_contour_take_care(work, 1);
     }

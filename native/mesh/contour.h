@@ -87,6 +87,7 @@ typedef struct contour_block {
     uint64_t calm_mask[8];   /* and are where the surface is smooth, their quadrilaterals cut into four */
     uint64_t middle_mask[8]; /* and are in the middle of their crossings, which never cut each other */
     uint64_t noted_mask[8];  /* to go one further */
+    int noted;               /* any of them are */
     int changed;             /* vertices are to be placed again */
     int touched;             /* its facets may be others than at the last attempt */
     int amiss;               /* were touched at any attempt */
@@ -100,7 +101,8 @@ typedef struct contour_block {
     uint32_t exact_count;  /* vertices on the exact surface */
     double within;         /* its share of the volume within the surface, in voxels */
     float unseen;          /* material in voxels that no crossing is near, in voxels */
-    size_t vertex_first;   /* of those left, of the whole mesh */
+    float most;            /* greatest coordinate of its vertices, when they were last gathered */
+    size_t vertex_first;   /* of those left, where they were last gathered */
     size_t centre_first;
     size_t facet_first;
     contour_crossing *crossings;
@@ -109,11 +111,15 @@ typedef struct contour_block {
     uint16_t *tile; /* of a vertex: which of those left stands for it, and SWARF_TILED; NULL: all are left */
     uint16_t *left; /* of those left: their vertices; NULL: all are */
     contour_vertex *centres;
-    swarf_facet *facets; /* vertex numbers of the whole mesh; centres counted from 0, marked by SWARF_CENTRE */
+    swarf_facet *facets; /* corners as below */
 } contour_block;
 
-/** Marks a vertex number as a centre's while centres have no place yet. */
+/** How a block's facets name their corners, so that they stay as they are when other blocks get more vertices: a centre
+ *  by SWARF_CENTRE and its number in the block; else by which of its block's vertices left it is, and which block that
+ *  is: in the upper half a bit for each axis along which it is the one below (4: x, 2: y, 1: z). */
 #define SWARF_CENTRE 0x80000000u
+#define SWARF_LEFT_MASK 0xffffu
+enum { SWARF_BELOW_SHIFT = 16 };
 /** Marks the vertices of a tile. */
 #define SWARF_TILED 0x8000u
 
@@ -179,7 +185,23 @@ swarf_status swarf_contour_place(contour *work, contour_block *block);
  *  `changed`. Reads those of the blocks about it. */
 swarf_status swarf_contour_unfold(contour *work, contour_block *block);
 swarf_status swarf_contour_tile(contour *work, contour_block *block);
+/** No tiles, all vertices. */
+void swarf_contour_untile(contour_block *block);
 swarf_status swarf_contour_join(contour *work, contour_block *block);
+
+/** Some of the blocks, by their numbers; the first so many with their facets, and with all blocks that these name. */
+typedef struct contour_choice {
+    uint32_t *block;
+    size_t count, joined;
+} contour_choice;
+
+/** The vertices and facets of the chosen blocks (NULL: of all) as one surface, in the memory of *out where that is
+ *  enough. *marks (NULL: none are wanted) are the caller's to free: locked are the vertices of cells that care was
+ * taken of, and those that bands share. */
+swarf_status swarf_contour_gather(contour *work, const contour_choice *choice, swarf_facets *out, uint8_t **marks);
+/** Look at the touched blocks alone, with all vertices there, and note the cells that care was taken of and whose
+ * facets still cut each other; *count: pairs of them. The blocks are left to be tiled and joined again. */
+swarf_status swarf_contour_look(contour *work, size_t *count);
 /** Which edges were split, and where, so that later attempts need not look again. Starts as zeros. */
 typedef struct swarf_crease_memo {
     struct crease_split *splits;
@@ -208,7 +230,14 @@ void swarf_contour_cross_exact(const swarf_surface_near *near, const double a[3]
 void swarf_contour_fetch(const contour *work, const int32_t ijk[3], float values[SWARF_HALO * SWARF_HALO * SWARF_HALO]);
 /** The block that holds a voxel, NULL where there is none. */
 contour_block *swarf_contour_block_at(const contour *work, const int32_t ijk[3]);
-/** The same when it is most often `near`. */
+/** The block below along the axes of a mask (4: x, 2: y, 1: z). */
+static inline contour_block *swarf_contour_block_below(const contour *work, const contour_block *block, int below)
+{
+    int32_t corner[3];
+    for (int k = 0; k < 3; k++) corner[k] = block->ijk[k] - (below >> (2 - k) & 1) * SWARF_LEAF_DIM;
+    return swarf_contour_block_at(work, corner);
+}
+/** The block that holds a voxel, most often `near`. */
 static inline const contour_block *swarf_contour_block_near(const contour *work, const contour_block *near,
                                                             const int32_t ijk[3])
 {

@@ -37,6 +37,7 @@ void swarf_contour_note(contour *work, const swarf_facets *facets, const swarf_f
                         if (y + bit / 8 < lo[1] || y + bit / 8 > hi[1] || z + bit % 8 < lo[2] || z + bit % 8 > hi[2])
                             word &= ~(UINT64_C(1) << bit);
                     block->noted_mask[i] |= word;
+                    block->noted |= word != 0;
                 }
             }
 }
@@ -60,7 +61,7 @@ static int any_beside(const contour *work, int all_kept)
     uint64_t beside = 0;
     for (size_t b = 0; b < work->block_count; b++) {
         const contour_block *block = &work->blocks[b];
-        for (int x = 0; x < 8 && !block->finished; x++)
+        for (int x = 0; x < 8 && block->noted && !block->finished; x++)
             beside |= block->noted_mask[x] & block->beside_mask[x] & (all_kept ? UINT64_MAX : block->keep_mask[x]);
     }
     return beside != 0;
@@ -71,9 +72,8 @@ void swarf_contour_take_care(contour *work, int all_kept)
     const int beside = any_beside(work, all_kept);
     for (size_t b = 0; b < work->block_count; b++) {
         contour_block *block = &work->blocks[b];
-        uint64_t any = 0;
         block->changed = 0;
-        if (block->finished) continue;
+        if (!block->noted || block->finished) continue;
         for (int x = 0; x < 8; x++) {
             const uint64_t noted = block->noted_mask[x], kept = all_kept ? noted : block->keep_mask[x];
             block->changed |= (noted & kept) != 0;
@@ -84,8 +84,8 @@ void swarf_contour_take_care(contour *work, int all_kept)
             }
             block->keep_mask[x] |= noted;
             block->noted_mask[x] = 0;
-            any |= noted;
         }
-        if (any) touch_about(work, block);
+        block->noted = 0;
+        touch_about(work, block);
     }
 }

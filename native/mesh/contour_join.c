@@ -14,7 +14,7 @@ static const double least_height = 1e-3;
 typedef struct corner {
     double at[3]; /* in voxels from the edge's voxel, set by measure_corners() */
     const float *xyz;
-    uint32_t number;
+    uint32_t number; /* as facets of the block that is joined name it */
     int calm, tiled;
 } corner;
 
@@ -35,7 +35,9 @@ static int find_corner(const contour *work, const contour_block *near, const int
         left = block->tile[local] & ~SWARF_TILED;
         local = block->left[left];
     }
-    out->number = (uint32_t)(block->vertex_first + left);
+    uint32_t below = 0;
+    for (int k = 0; k < 3; k++) below = below << 1 | (uint32_t)((cell[k] ^ near->ijk[k]) / SWARF_LEAF_DIM & 1);
+    out->number = below << SWARF_BELOW_SHIFT | left;
     out->calm = (int)(block->calm_mask[x] >> bit & 1);
     out->xyz = block->vertices[local].xyz;
     return 1;

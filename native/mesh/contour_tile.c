@@ -218,14 +218,19 @@ static swarf_status count_left(contour_block *block)
     return SWARF_OK;
 }
 
-swarf_status swarf_contour_tile(contour *work, contour_block *block)
+void swarf_contour_untile(contour_block *block)
 {
-    static const int corner[3] = {0, 0, 0};
-    uint64_t flat = 0;
     free(block->tile);
     free(block->left);
     block->tile = block->left = NULL;
     block->left_count = block->vertex_count;
+}
+
+swarf_status swarf_contour_tile(contour *work, contour_block *block)
+{
+    static const int corner[3] = {0, 0, 0};
+    uint64_t flat = 0;
+    swarf_contour_untile(block);
     for (int x = 0; x < 8; x++) flat |= block->flat_mask[x];
     if (!(work->error_mm > 0) || !flat) return SWARF_OK;
     block->tile = malloc(block->vertex_count * sizeof *block->tile);

@@ -116,7 +116,8 @@ static swarf_status gather(const swarf_facets *facets, const crease_cuts *cuts, 
     swarf_facet *list = malloc(room * sizeof *list);
     out->fresh = calloc(room, 1);
     out->cut_of = malloc(room * sizeof *out->cut_of);
-    out->facets = (swarf_facets){facets->xyz, facets->vertex_count + cuts->pair_count, list, 0};
+    out->facets =
+        (swarf_facets){.xyz = facets->xyz, .vertex_count = facets->vertex_count + cuts->pair_count, .facet = list};
     if (!list || !out->fresh || !out->cut_of) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory");
     size_t count = 0;
     for (size_t i = 0; i < near_count; i++) {

@@ -300,6 +300,7 @@ static swarf_status grow(swarf_facets *facets, size_t pairs, uint8_t **marks)
     if (xyz) facets->xyz = xyz;
     swarf_facet *facet = realloc(facets->facet, (facets->facet_count + 2 * pairs + 1) * sizeof *facet);
     if (facet) facets->facet = facet;
+    facets->vertex_room = facets->facet_room = 0;
     uint8_t *grown = *marks ? realloc(*marks, all + 1) : NULL;
     if (grown) *marks = grown;
     if (!xyz || !facet || (*marks && !grown) || all >= UINT32_MAX || facets->facet_count + 2 * pairs >= UINT32_MAX)
@@ -360,7 +361,7 @@ swarf_status swarf_crease_cut(crease_splits *splits, swarf_facets *facets, uint8
     for (size_t i = 0; i < splits->count && status == SWARF_OK; i++)
         memcpy(facets->xyz + 3 * (before + i), splits->split[i].point, sizeof splits->split[i].point);
     if (status == SWARF_OK) {
-        swarf_facets all = {facets->xyz, before + splits->count, NULL, 0};
+        swarf_facets all = {.xyz = facets->xyz, .vertex_count = before + splits->count};
         swarf_facets_snap(&all, splits->work->band ? splits->work->band->step : 0);
     }
     if (status == SWARF_OK) status = cut_facets(&c, progress, from);

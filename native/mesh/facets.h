@@ -20,6 +20,7 @@ typedef struct swarf_facets {
     size_t vertex_count;
     swarf_facet *facet;
     size_t facet_count;
+    size_t vertex_room, facet_room; /* what there is memory for; 0: just for these */
 } swarf_facets;
 
 void swarf_facets_free(swarf_facets *facets);

@@ -75,14 +75,19 @@ double swarf_facets_step(double most)
     return ldexp(1, exponent - 24);
 }
 
-static double step_of(const swarf_facets *facets)
+float swarf_facets_most(const float *xyz, size_t vertex_count)
 {
     float most = 0;
-    for (size_t i = 0; i < 3 * facets->vertex_count; i++) {
-        const float size = fabsf(facets->xyz[i]);
+    for (size_t i = 0; i < 3 * vertex_count; i++) {
+        const float size = fabsf(xyz[i]);
         most = size > most ? size : most;
     }
-    return swarf_facets_step((double)most);
+    return most;
+}
+
+static double step_of(const swarf_facets *facets)
+{
+    return swarf_facets_step((double)swarf_facets_most(facets->xyz, facets->vertex_count));
 }
 
 void swarf_facets_snap(swarf_facets *facets, double least)
