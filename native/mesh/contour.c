@@ -125,6 +125,7 @@ typedef struct stage {
     const swarf_progress *progress;
     swarf_facets *facets;
     swarf_facets_memo *memo;
+    double *step; /* that positions were rounded to at the last attempt, 0: there was none */
     swarf_facets_known *known;
     swarf_crease_memo *creases;
     swarf_contour_report *report;
@@ -200,7 +201,9 @@ static swarf_status attempt(const stage *s, int first, found *out)
     if (fine) /* later attempts can be broken off, but get no further */
         status = swarf_contour_crease(work, s->facets, &marks, s->creases, s->progress, first ? 0.7 : 0.99,
                                       first ? 0.8 : 0.99, &out->split);
-    swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
+    const double step = swarf_facets_snap(s->facets, work->band ? work->band->step : 0);
+    s->memo->same = step == *s->step && !fine; /* splitting edges leaves facets of known vertices alone, or not */
+    *s->step = step;
     if (status == SWARF_OK)
         status = swarf_facets_simplify(s->facets, work->error_mm, voxel, s->options->triangle_budget, marks, s->memo,
                                        first ? s->progress : NULL, fine ? 0.8 : 0.7, 0.9);
@@ -257,7 +260,8 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
     swarf_facets_memo memo = {0};
     swarf_facets_known known = {0};
     swarf_crease_memo creases = {0};
-    const stage s = {work, options, progress, facets, &memo, &known, &creases, report};
+    double step = 0;
+    const stage s = {work, options, progress, facets, &memo, &step, &known, &creases, report};
     swarf_contour_table_fill(&work->table);
     SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, progress, 0, 0.3));
     SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, progress, 0.3, 0.56));

@@ -197,7 +197,7 @@ typedef struct contour_choice {
 
 /** The vertices and facets of the chosen blocks (NULL: of all) as one surface, in the memory of *out where that is
  *  enough. *marks (NULL: none are wanted) are the caller's to free: locked are the vertices of cells that care was
- * taken of, and those that bands share. */
+ * taken of, and those that bands share, known those of blocks that were not touched. */
 swarf_status swarf_contour_gather(contour *work, const contour_choice *choice, swarf_facets *out, uint8_t **marks);
 /** Look at the touched blocks alone, with all vertices there, and note the cells that care was taken of and whose
  * facets still cut each other; *count: pairs of them. The blocks are left to be tiled and joined again. */

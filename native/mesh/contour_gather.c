@@ -94,13 +94,17 @@ static swarf_status gather_one(void *context, size_t index)
     else if (block->left_count) /* none beyond the band */
         memcpy(xyz, block->vertices, block->left_count * 12);
     block->most = swarf_facets_most(xyz, block->left_count);
-    if (g->marks) mark_vertices(g, block);
+    const uint8_t known = block->touched ? 0 : SWARF_VERTEX_KNOWN;
+    if (g->marks) {
+        memset(g->marks + block->vertex_first, known, block->left_count);
+        mark_vertices(g, block);
+    }
     if (!facet_count_of(g, index, block)) return SWARF_OK;
     const size_t centre = g->vertices + block->centre_first;
     memcpy(g->out->xyz + 3 * centre, block->centres, block->centre_count * 12);
     /* nor are centres left out where something was amiss already */
-    if (g->marks && (g->work->band || block->amiss))
-        memset(g->marks + centre, SWARF_VERTEX_LOCKED, block->centre_count);
+    const uint8_t locked = g->work->band || block->amiss ? SWARF_VERTEX_LOCKED : 0;
+    if (g->marks) memset(g->marks + centre, known | locked, block->centre_count);
     put_facets(g, block);
     return SWARF_OK;
 }

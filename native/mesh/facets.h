@@ -28,13 +28,16 @@ void swarf_facets_free(swarf_facets *facets);
 /** Drop vertices that no facet uses; `marks` (NULL: none) go with the others. */
 swarf_status swarf_facets_compact(swarf_facets *facets, uint8_t *marks);
 
-/** Mark of vertices: stays. */
-enum { SWARF_VERTEX_LOCKED = 1 };
+/** Marks of vertices: stays; is as it was when the memo was made. Facets whose corners are all known were there then,
+ *  in the same order; others may have been there beside them. */
+enum { SWARF_VERTEX_LOCKED = 1, SWARF_VERTEX_KNOWN = 2 };
 
 /** What simplifying came to cube by cube, so that only cubes with other facets than before are simplified again. Starts
  *  as zeros. */
 typedef struct swarf_facets_memo {
     struct pass_memo *pass;
+    double least[3], most[3]; /* of the vertices */
+    int same;                 /* vertices marked as known are; set by the caller */
 } swarf_facets_memo;
 
 void swarf_facets_memo_free(swarf_facets_memo *memo);

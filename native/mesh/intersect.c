@@ -90,12 +90,13 @@ static double step_of(const swarf_facets *facets)
     return swarf_facets_step((double)swarf_facets_most(facets->xyz, facets->vertex_count));
 }
 
-void swarf_facets_snap(swarf_facets *facets, double least)
+double swarf_facets_snap(swarf_facets *facets, double least)
 {
     /* adding and taking away 1.5 * 2^52 steps rounds to whole steps */
     const double step = fmax(step_of(facets), least), magic = 0x1.8p52 * step;
     for (size_t i = 0; i < 3 * facets->vertex_count; i++)
         facets->xyz[i] = (float)((double)facets->xyz[i] + magic - magic);
+    return step;
 }
 
 static void corners_of(const tree *t, uint32_t f, int32_t out[3][3])

@@ -12,8 +12,8 @@ double swarf_facets_step(double most);
 /** The greatest coordinate of positions, whatever its sign. */
 float swarf_facets_most(const float *xyz, size_t vertex_count);
 
-/** Round positions to the steps of their greatest coordinate, or to `least` where that is more. */
-void swarf_facets_snap(swarf_facets *facets, double least);
+/** Round positions to the steps of their greatest coordinate, or to `least` where that is more; returns the step. */
+double swarf_facets_snap(swarf_facets *facets, double least);
 
 typedef struct swarf_facet_pair {
     uint32_t a, b;

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/status.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,6 +45,8 @@ typedef struct job {
     uint8_t *zone;       /* of every vertex, in the last pass at a limit; else NULL */
     size_t parts;        /* of the facets, in their order */
     int put;             /* facets are put, not counted */
+    int trusted;         /* known vertices are, see swarf_facets_memo */
+    uint8_t *fresh;      /* by cube, then by part: it has facets with vertices that are not known; NULL: any may */
     size_t *owned_begin; /* by cube, then by part */
     size_t *shared_begin;
     uint32_t *owned;          /* facets by cube */
@@ -107,10 +110,12 @@ static swarf_status sort_part(void *context, size_t part)
         const int whole = c[0] == c[1] && c[1] == c[2];
         size_t *begin = whole ? j->owned_begin : j->shared_begin;
         uint32_t *list = whole ? j->owned : j->shared;
+        const int fresh = j->fresh && !(j->marks[v[0]] & j->marks[v[1]] & j->marks[v[2]] & SWARF_VERTEX_KNOWN);
         for (int k = 0; k < 3; k++) {
             if ((k > 0 && c[k] == c[0]) || (k > 1 && c[k] == c[1])) continue;
             size_t *at = &begin[c[k] * j->parts + part];
             if (j->put) list[*at] = (uint32_t)f;
+            if (fresh) j->fresh[c[k] * j->parts + part] = 1;
             ++*at;
         }
     }
@@ -160,12 +165,16 @@ typedef struct pass_memo {
     size_t count;
 } pass_memo;
 
+static void forget_cube(cube_memo *memo)
+{
+    free(memo->facet);
+    free(memo->state);
+    *memo = (cube_memo){0};
+}
+
 static void forget(pass_memo *memo)
 {
-    for (size_t i = 0; memo->cube && i < memo->count; i++) {
-        free(memo->cube[i].facet);
-        free(memo->cube[i].state);
-    }
+    for (size_t i = 0; memo->cube && i < memo->count; i++) forget_cube(&memo->cube[i]);
     free(memo->cube);
     *memo = (pass_memo){0};
 }
@@ -226,8 +235,7 @@ static void remember(const simplify_region *r, uint64_t print, cube_memo *memo)
 {
     size_t left = 0;
     for (size_t f = 0; f < r->owned_count; f++) left += r->facet[f].alive;
-    free(memo->facet);
-    free(memo->state);
+    forget_cube(memo);
     *memo = (cube_memo){.vertices = r->vertex_count, .facets = r->facet_count, .owned = r->owned_count, .print = print};
     memo->facet = malloc((left + 1) * sizeof *memo->facet);
     memo->state = malloc(r->vertex_count + 1);
@@ -278,6 +286,31 @@ static size_t put_back(const simplify_region *r, swarf_facet *mesh)
     return gone;
 }
 
+/* What became of facets that are as they were, straight to the mesh. Returns how many went. */
+static size_t put_known(const job *j, const simplify_region *r, const cube_memo *memo, const uint32_t *owned)
+{
+    swarf_facet *mesh = j->facets->facet;
+    for (size_t f = 0; f < memo->owned; f++) mesh[owned[f]].v[0] = SWARF_NO_VERTEX;
+    for (size_t i = 0; i < memo->facet_count; i++) {
+        const memo_facet *left = &memo->facet[i];
+        swarf_facet *facet = &mesh[owned[left->owned]];
+        facet->error_mm = left->error_mm;
+        facet->lost_mm3 = left->lost_mm3;
+        for (size_t k = 0; k < 3; k++) facet->v[k] = r->global[left->v[k]];
+    }
+    return memo->owned - memo->facet_count;
+}
+
+/* The region's number of a vertex; *is_first: it had none. */
+static uint32_t number_of(const job *j, simplify_region *r, uint32_t vertex, int *is_first)
+{
+    const uint32_t own = j->local[vertex];
+    *is_first = own >= r->vertex_count || r->global[own] != vertex;
+    if (!*is_first) return own;
+    r->global[r->vertex_count] = vertex;
+    return j->local[vertex] = (uint32_t)r->vertex_count++;
+}
+
 static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, int shared)
 {
     const size_t f = r->facet_count++;
@@ -289,10 +322,9 @@ static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, 
         const uint32_t vertex = facet->v[k];
         here->v[k] = SWARF_NO_VERTEX;
         if (shared && j->cube[vertex] != cube) continue;
-        uint32_t own = j->local[vertex];
-        if (own >= r->vertex_count || r->global[own] != vertex) { /* seen for the first time */
-            own = j->local[vertex] = (uint32_t)r->vertex_count++;
-            r->global[own] = vertex;
+        int is_first;
+        const uint32_t own = number_of(j, r, vertex, &is_first);
+        if (is_first) {
             r->head[own] = SWARF_NO_VERTEX;
             r->mark[own] = 0;
             r->need[own] = j->settled[vertex] ? INFINITY : 0;
@@ -309,12 +341,70 @@ static void add_facet(job *j, simplify_region *r, size_t cube, uint32_t number, 
     }
 }
 
-static void simplify_or_recall(const job *j, simplify_region *r, size_t cube)
+/* The facets of a cube. */
+typedef struct cube_list {
+    const uint32_t *owned, *shared;
+    size_t owned_count, shared_count;
+} cube_list;
+
+/* Those that lie in it wholly first. */
+static uint32_t facet_of(const cube_list *list, size_t i)
 {
-    cube_memo *memo = j->memo ? &j->memo->cube[cube] : NULL;
+    return i < list->owned_count ? list->owned[i] : list->shared[i - list->owned_count];
+}
+
+static cube_list list_of(const job *j, size_t cube)
+{
+    const size_t first = cube * j->parts, last = first + j->parts - 1; /* the begins have become the ends */
+    const size_t owned = cube ? j->owned_begin[first - 1] : 0, shared = cube ? j->shared_begin[first - 1] : 0;
+    return (cube_list){.owned = j->owned + owned,
+                       .shared = j->shared + shared,
+                       .owned_count = j->owned_begin[last] - owned,
+                       .shared_count = j->shared_begin[last] - shared};
+}
+
+/* Whether all facets of a cube are those of the attempt before: all vertices are known, and none have gone. */
+static int is_known(const job *j, size_t cube, const cube_list *list, const cube_memo *memo)
+{
+    if (!j->fresh || !memo->facet || !memo->state || memo->owned != list->owned_count ||
+        memo->facets != list->owned_count + list->shared_count)
+        return 0;
+    uint8_t fresh = 0;
+    for (size_t part = 0; part < j->parts; part++) fresh |= j->fresh[cube * j->parts + part];
+    return !fresh;
+}
+
+/* Number the vertices as add_facet() does, and settle them as they were. */
+static void settle_known(const job *j, simplify_region *r, size_t cube, const cube_list *list, const cube_memo *memo)
+{
+    for (size_t i = 0; i < list->owned_count + list->shared_count; i++) {
+        const swarf_facet *facet = &j->facets->facet[facet_of(list, i)];
+        for (size_t k = 0; k < 3; k++) {
+            int is_first;
+            if (j->cube[facet->v[k]] != cube) continue;
+            const uint32_t own = number_of(j, r, facet->v[k], &is_first);
+            if (is_first) j->settled[facet->v[k]] = memo->state[own] == 0;
+        }
+    }
+    assert(r->vertex_count == memo->vertices);
+}
+
+/* What becomes of a cube may be something else than at the attempt before. */
+static void make_fresh(const job *j, size_t cube, const cube_list *list)
+{
+    for (size_t i = 0; i < list->owned_count + list->shared_count; i++) {
+        const swarf_facet *facet = &j->facets->facet[facet_of(list, i)];
+        for (size_t k = 0; k < 3; k++)
+            if (j->cube[facet->v[k]] == cube) j->marks[facet->v[k]] &= (uint8_t)~SWARF_VERTEX_KNOWN;
+    }
+}
+
+static void simplify_or_recall(const job *j, simplify_region *r, size_t cube, const cube_list *list, cube_memo *memo)
+{
     const uint64_t print = memo ? print_of(r) : 0;
     if (memo && recall(r, print, memo)) return;
     swarf_simplify_region(r, j->limit, j->first);
+    if (j->trusted) make_fresh(j, cube, list);
     if (memo) remember(r, print, memo);
 }
 
@@ -343,15 +433,24 @@ static swarf_status make_room(simplify_region *r, size_t facets)
 
 static swarf_status simplify_facets(job *j, size_t cube, simplify_region *r)
 {
-    const size_t first = cube * j->parts, last = first + j->parts - 1; /* the begins have become the ends */
-    const size_t owned_first = cube ? j->owned_begin[first - 1] : 0, owned = j->owned_begin[last] - owned_first;
-    const size_t shared_first = cube ? j->shared_begin[first - 1] : 0, shared = j->shared_begin[last] - shared_first;
-    if (owned < 4) return SWARF_OK; /* nothing to remove */
-    SWARF_TRY(make_room(r, owned + shared));
-    for (size_t i = 0; i < owned; i++) add_facet(j, r, cube, j->owned[owned_first + i], 0);
-    r->owned_count = owned;
-    for (size_t i = 0; i < shared; i++) add_facet(j, r, cube, j->shared[shared_first + i], 1);
-    simplify_or_recall(j, r, cube);
+    enum { LEAST = 4 }; /* of fewer none can go */
+    const cube_list list = list_of(j, cube);
+    cube_memo *memo = j->memo ? &j->memo->cube[cube] : NULL;
+    if (list.owned_count < LEAST) {
+        if (!memo || !memo->owned) return SWARF_OK; /* nor was anything done before */
+        if (j->trusted) make_fresh(j, cube, &list);
+        forget_cube(memo);
+        return SWARF_OK;
+    }
+    SWARF_TRY(make_room(r, list.owned_count + list.shared_count));
+    if (memo && is_known(j, cube, &list, memo)) {
+        settle_known(j, r, cube, &list, memo);
+        j->gone[cube] = put_known(j, r, memo, list.owned);
+        return SWARF_OK;
+    }
+    for (; r->owned_count < list.owned_count; r->owned_count++) add_facet(j, r, cube, list.owned[r->owned_count], 0);
+    for (size_t i = 0; i < list.shared_count; i++) add_facet(j, r, cube, list.shared[i], 1);
+    simplify_or_recall(j, r, cube, &list, memo);
     j->gone[cube] = put_back(r, j->facets->facet);
     for (size_t i = 0; i < r->vertex_count; i++) j->settled[r->global[i]] = r->state[i] == 0;
     return SWARF_OK;
@@ -391,6 +490,16 @@ static void find_bounds(job *j)
     }
 }
 
+/* Whether known vertices can be trusted; the next call can trust those of this one. */
+static int are_known(const job *j, swarf_facets_memo *memo)
+{
+    const int same = memcmp(memo->least, j->least, sizeof j->least) == 0 && /* the same cubes */
+                     memcmp(memo->most, j->most, sizeof j->most) == 0;
+    memcpy(memo->least, j->least, sizeof j->least);
+    memcpy(memo->most, j->most, sizeof j->most);
+    return memo->same && same && j->marks;
+}
+
 static void lay_out(job *j, const struct pass *pass, double voxel)
 {
     j->edge = pass->edge * voxel;
@@ -422,6 +531,10 @@ static swarf_status sort_facets(job *j, size_t cubes)
 {
     j->parts = PARTS * cubes < j->facets->facet_count ? PARTS : 1;
     const size_t begins = cubes * j->parts;
+    if (j->memo && j->trusted) {
+        j->fresh = calloc(begins, 1);
+        if (!j->fresh) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
+    }
     j->owned_begin = calloc(begins, sizeof *j->owned_begin);
     j->shared_begin = calloc(begins, sizeof *j->shared_begin);
     if (!j->owned_begin || !j->shared_begin)
@@ -462,7 +575,8 @@ static void free_pass(job *j)
     free(j->shared);
     free(j->gone);
     free(j->zone);
-    j->zone = NULL;
+    free(j->fresh);
+    j->zone = j->fresh = NULL;
     j->owned_begin = j->shared_begin = j->gone = NULL;
     j->owned = j->shared = NULL;
 }
@@ -483,6 +597,7 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
     if (memo && !memo->pass) memo->pass = calloc(PASSES, sizeof *memo->pass);
     if (memo && !memo->pass) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     find_bounds(&j);
+    j.trusted = memo && !budget && are_known(&j, memo);
     const int steps = budget ? ERROR_STEPS : 1;
     double at = from;
     const double part = (to - from) / (steps * PASSES);
