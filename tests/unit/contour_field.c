@@ -449,40 +449,11 @@ static void check_askew(const swarf_placement *there, limits whole, limits mille
     swarf_stock_destroy(stock);
 }
 
-/* What a ball of few voxels leaves, whose faces bend as much as edges seem to. */
-static void check_ball(double diameter)
-{
-    const double tip[3] = {0.03, -0.02, -0.45 * diameter}, above[3] = {tip[0], tip[1], 5}, radius = 0.5 * diameter;
-    part t = {.first = plane_body(&block), .back = swarf_placement_identity()};
-    swarf_stock *stock = stock_block(&block, voxel);
-    char text[32];
-    snprintf(text, sizeof text, "ball:d=%g,l=19", diameter);
-    add_cut(&t, stock, text, BALL, above, tip, radius, 0);
-    swarf_mesh *mesh = make_mesh(stock);
-    const swarf_triangles view = swarf_mesh_triangles(mesh);
-    double sum = 0, most = 0;
-    int count = 0;
-    for (size_t i = 0; i < view.vertex_count; i++) {
-        const float *v = view.xyz + 3 * i;
-        const double p[3] = {(double)v[0] - tip[0], (double)v[1] - tip[1], (double)v[2] - tip[2] - radius};
-        const double off = fabs(sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) - radius) / voxel;
-        if (off > 0.5 || (double)v[2] > -2 * voxel) continue; /* another face, or beside one */
-        sum += off;
-        most = fmax(most, off);
-        count++;
-    }
-    printf("ball of %4.1f voxels: %d vertices off %.5f, worst %.4f voxels\n", radius / voxel, count, sum / count, most);
-    CHECK(count > 80 && sum < 0.002 * count && most < 0.012);
-    swarf_mesh_release(mesh);
-    swarf_stock_destroy(stock);
-}
-
 int main(void)
 {
     const swarf_placement little = make_placement(0.05, 0.03, 0.3), much = make_placement(0.5, -0.4, 0.7);
     check_straight();
     check_askew(&little, (limits){0.002, 0.02, 0.05}, (limits){0.03, 0.1, 0.5});
     check_askew(&much, (limits){0.01, 0.05, 0.1}, (limits){0.06, 0.12, 0.7});
-    for (double diameter = 2; diameter < 7; diameter += 0.6) check_ball(diameter);
     return test_end();
 }

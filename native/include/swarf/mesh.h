@@ -68,11 +68,13 @@ typedef struct swarf_contour_report {
  *  hangs together; the surface, where it is given, decides where its vertices lie: on the true faces and edges within a
  *  hundredth of a voxel.
  *
- *  The field alone tells faces to about as much, round ones of less than six voxels to a tenth; edges where the
- *  faces beside them meet, half of them within a hundredth and nearly all within a tenth of a voxel, but within half
- *  of one where a third face is nearer than three voxels, and where the field is no distance. It is used where the
- *  surface does not have the stock's signs. In a field with noise of a tenth of a voxel and more vertices are off by
- *  as much as that.
+ *  The field alone tells faces to about as much. Of round ones 99 vertices of 100 are within 0.01 voxel where their
+ *  radius is six voxels and more, single ones off by 0.03; of four to six within 0.02, single ones off by a tenth; of
+ *  three to four by 0.13 and 0.27; of two to three by 0.22 and 0.43; in the mean by 0.002, 0.003, 0.01 and 0.04. Edges
+ *  are where the faces beside them meet, half of them within a hundredth and nearly all within a tenth of a voxel, but
+ *  within half of one where a third face is nearer than three voxels, and where the field is no distance. It is used
+ *  where the surface does not have the stock's signs. In a field with noise of a tenth of a voxel and more vertices
+ *  are off by as much as that.
  *
  *  Walls and gaps thinner than a voxel have no voxel centre in places, and are not there then; how much material that
  *  is the report tells, about. Wedges, roots of threads and tips of points narrower than a voxel end up to a voxel
