@@ -240,13 +240,6 @@ static int meet(cell *c, double x[3])
     return meet_two(c, x);
 }
 
-static void middle_of(const contour_polygon *polygon, double out[3])
-{
-    out[0] = out[1] = out[2] = 0;
-    for (int i = 0; i < polygon->count; i++)
-        for (int k = 0; k < 3; k++) out[k] += polygon->point[i][k] / polygon->count;
-}
-
 /* On the surface as near to `from` as Newton's steps lead. */
 static void place_smooth(const cell *c, const double from[3], double out[3])
 {
@@ -258,7 +251,7 @@ static void place_smooth(const cell *c, const double from[3], double out[3])
 void swarf_contour_vertex_smooth(const contour_polygon *polygon, const swarf_surface_near *near, double out[3])
 {
     cell c = {.polygon = polygon, .near = near};
-    middle_of(polygon, c.middle);
+    swarf_contour_middle(polygon, c.middle);
     place_smooth(&c, c.middle, out);
 }
 
@@ -267,7 +260,7 @@ int swarf_contour_vertex_exact(const contour_polygon *polygon, const swarf_surfa
     cell c = {.polygon = polygon, .near = near};
     double least_dot = 1;
     int one_piece = 1;
-    middle_of(polygon, c.middle);
+    swarf_contour_middle(polygon, c.middle);
     for (int i = 0; i < polygon->count; i++) {
         for (int j = 0; j < i; j++) {
             const double likeness = dot(polygon->normal[i], polygon->normal[j]);

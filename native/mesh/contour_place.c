@@ -12,6 +12,7 @@ typedef struct placing {
     contour *work;
     contour_block *block;
     contour_near near;
+    contour_flats flats;
     int fetched; /* whether values are there: few cells need them */
     float values[SWARF_HALO * SWARF_HALO * SWARF_HALO];
 } placing;
@@ -67,61 +68,10 @@ static void gather(const placing *p, const int at[3], const contour_case *joined
     }
 }
 
-static void place_middle(const contour_polygon *polygon, double out[3])
-{
-    const double part = 1.0 / polygon->count;
-    for (int k = 0; k < 3; k++) {
-        out[k] = 0;
-        for (int i = 0; i < polygon->count; i++) out[k] += polygon->point[i][k];
-        out[k] *= part;
-    }
-}
-
-/* In voxels: planes of crossings on one flat face pass each other's crossings this close, and the exact surface the
- * vertex; and the cosine between their normals, for 0.3 degrees. */
-static const double same_plane = 1e-3, same_plane_cosine = 0.999986;
-
 /* Faces beside a wedge differ by more than 15 degrees. */
 static const double wedge_cosine = 0.966;
 /* In voxels: how far along the edge of a wedge a vertex may be moved. */
 static const double farthest_along = 0.5;
-
-/* Whether the field is flat round all crossings. */
-static int is_flat(const contour_polygon *polygon)
-{
-    for (int i = 0; i < polygon->count; i++)
-        if (polygon->move[i] != SWARF_BY_FLAT_FIELD) return 0;
-    return 1;
-}
-
-/* Where the field is flat round all crossings, their middle is on the surface, unless that is hidden from the field. */
-static int place_flat(const contour_polygon *polygon, const swarf_surface_near *near, double out[3])
-{
-    if (!is_flat(polygon)) return 0;
-    double middle[3];
-    place_middle(polygon, middle);
-    const double *n = polygon->normal[0];
-    for (int i = 0; i < polygon->count; i++) {
-        const double *m = polygon->normal[i];
-        double away = 0, cosine = 0;
-        for (int k = 0; k < 3; k++) {
-            away += n[k] * (polygon->point[i][k] - middle[k]);
-            cosine += n[k] * m[k];
-        }
-        if (fabs(away) > same_plane || cosine < same_plane_cosine) return 0;
-    }
-    if (near) {
-        swarf_surface_point found;
-        double world[3], cosine = 0;
-        for (int k = 0; k < 3; k++) world[k] = polygon->origin[k] + middle[k] * polygon->voxel;
-        swarf_surface_evaluate(near, world, &found);
-        for (int k = 0; k < 3; k++) cosine += n[k] * found.normal[k];
-        if (fabs(found.value) > same_plane * polygon->voxel || cosine < same_plane_cosine) return 0;
-    }
-    memcpy(out, middle, sizeof middle);
-    swarf_contour_clamp(&polygon->bounds, out);
-    return 1;
-}
 
 /* Crossings of a flat field beside others: what they are on the exact surface. */
 static void make_exact(contour_polygon *polygon, const swarf_surface_near *near, int config)
@@ -218,8 +168,8 @@ static int has_faces(const contour_polygon *polygon)
 
 /* Place the vertex of a cycle on the exact surface if that made any of its crossings, else by the field. Sets
  * *flat where it lies on a flat face. */
-static swarf_status place_vertex(placing *p, const int at[3], int config, contour_polygon *polygon,
-                                 const swarf_surface_near *near, double out[3], int *flat)
+static swarf_status place_vertex(placing *p, const int at[3], int config, contour_polygon *polygon, double out[3],
+                                 int *flat)
 {
     contour_block *block = p->block;
     const int bit = at[1] * 8 + at[2];
@@ -229,16 +179,19 @@ static swarf_status place_vertex(placing *p, const int at[3], int config, contou
             double *t = &polygon->point[i][polygon->edge[i] / 4];
             *t = fmin(fmax(*t, SWARF_CONTOUR_LAST_MARGIN), 1 - SWARF_CONTOUR_LAST_MARGIN);
         }
-        place_middle(polygon, out);
+        swarf_contour_middle(polygon, out);
         return SWARF_OK;
     }
-    if (place_flat(polygon, near, out)) {
-        block->exact_count += near != NULL;
-        *flat = 1;
+    const swarf_surface_near *near;
+    SWARF_TRY(swarf_contour_vertex_flat(&p->flats, &p->near, at, polygon, out, flat));
+    if (*flat) {
+        block->exact_count += p->work->surface != NULL;
         return SWARF_OK;
     }
     int rank = 1, exact = 0;
+    SWARF_TRY(swarf_contour_near_get(&p->near, at, &near));
     if (near) {
+        SWARF_TRY(swarf_contour_near_narrow(&p->near, at, &near));
         make_exact(polygon, near, config);
         contour_polygon known = *polygon;
         keep_exact(&known);
@@ -253,7 +206,7 @@ static swarf_status place_vertex(placing *p, const int at[3], int config, contou
         }
     }
     if (!exact && calm)
-        place_middle(polygon, out);
+        swarf_contour_middle(polygon, out);
     else if (!exact)
         rank = place_by_field(p, at, polygon, out);
     block->sharp_count += rank > 1;
@@ -266,8 +219,6 @@ static swarf_status place_cell(placing *p, const int at[3], contour_cell *cell, 
     const swarf_tree_layout *layout = p->work->layout;
     contour_block *block = p->block;
     const contour_case *joined = &p->work->table.entry[cell->config][cell->flip];
-    const swarf_surface_near *surface;
-    SWARF_TRY(swarf_contour_near_get(&p->near, at, &surface));
     contour_polygon polygon;
     polygon.voxel = layout->voxel;
     for (int k = 0; k < 3; k++) {
@@ -279,9 +230,8 @@ static swarf_status place_cell(placing *p, const int at[3], contour_cell *cell, 
     for (int cycle = 0; cycle < joined->count; cycle++) {
         double inside[3] = {0.5, 0.5, 0.5};
         gather(p, at, joined, cycle, &polygon);
-        if (!is_flat(&polygon)) SWARF_TRY(swarf_contour_near_narrow(&p->near, at, &surface));
         int flat = 0;
-        if (polygon.count > 0) SWARF_TRY(place_vertex(p, at, cell->config, &polygon, surface, inside, &flat));
+        if (polygon.count > 0) SWARF_TRY(place_vertex(p, at, cell->config, &polygon, inside, &flat));
         if (flat && joined->count == 1) block->flat_mask[at[0]] |= UINT64_C(1) << (at[1] * 8 + at[2]);
         for (int k = 0; k < 3; k++)
             block->vertices[*used].xyz[k] = (float)(polygon.origin[k] + inside[k] * layout->voxel);
@@ -325,6 +275,7 @@ swarf_status swarf_contour_place(contour *work, contour_block *block)
     p.work = work;
     p.block = block;
     p.near = (contour_near){.work = work, .block = block};
+    p.flats.count = 0;
     p.fetched = 0;
     block->sharp_count = block->exact_count = 0;
     memset(block->flat_mask, 0, sizeof block->flat_mask);

@@ -23,7 +23,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void middle_of(const contour_polygon *polygon, double out[3])
+void swarf_contour_middle(const contour_polygon *polygon, double out[3])
 {
     for (int k = 0; k < 3; k++) {
         out[k] = 0;
@@ -168,7 +168,7 @@ void swarf_contour_rise(const contour_polygon *polygon, double x[3])
 int swarf_contour_vertex(const contour_polygon *polygon, double out[3])
 {
     double x[3], least_dot = 1;
-    middle_of(polygon, x);
+    swarf_contour_middle(polygon, x);
     for (int i = 0; i < polygon->count; i++)
         for (int j = 0; j < i; j++) least_dot = fmin(least_dot, dot(polygon->normal[i], polygon->normal[j]));
     int rank = 1, by_faces = 0;
