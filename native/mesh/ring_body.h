@@ -6,8 +6,8 @@
  * room for a whole pack from there.
  */
 #include "base/least.h"
+#include "base/pack.h"
 #include "mesh/ring.h"
-#include "sweep/pack.h"
 
 /* The vertices of flat rings are apart by this part of the limit. */
 static const double flat_part = 0.05;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Light on sixteen pixels, and four colours to bytes; included once per instruction set, beside ray_body.h. */
+#include "base/counts.h"
 #include "render/ray_kernel.h"
-#include "sweep/counts.h"
 
 /* A. Gooch, B. Gooch, P. Shirley, E. Cohen: A Non-Photorealistic Lighting Model for Automatic Technical Illustration,
  * SIGGRAPH 1998, section 4.2: blue and yellow shifts, and how much of the object's colour each side shows. Gentler

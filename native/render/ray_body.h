@@ -7,8 +7,8 @@
  * voxels. When all lanes stand in cells that stop them or have left, the trilinear fields of those cells are
  * intersected side by side. What comes in between waits for memory: packets of a group take turns.
  */
+#include "base/longs.h"
 #include "render/ray_kernel.h"
-#include "sweep/longs.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -3,7 +3,7 @@
  *
  * Lanes are 4 x 4 columns of voxels (lane = 4 * x + y); what needs a square root depends on (x, y) only and is done
  * once for the eight voxels above each other, except where a track is tilted and the body general. */
-#include "sweep/counts.h"
+#include "base/counts.h"
 #include "sweep/kernel_cull.h"
 #include "sweep/kernel_general.h"
 #include "sweep/kernel_line.h"

@@ -3,8 +3,8 @@
 #ifndef SWARF_SWEEP_KERNEL_PLAN_H
 #define SWARF_SWEEP_KERNEL_PLAN_H
 
+#include "base/lanes.h"
 #include "sweep/kernel.h"
-#include "sweep/lanes.h"
 
 /* Farther than any voxel that counts, and safe to square. */
 static const float far_away = 1e18f;

@@ -2,10 +2,10 @@
 /* As many doubles side by side as fit one register, beside lanes.h: + - * / are the compiler's own. What is asked of
  * them comes as a bit per value. None may be NaN where the least or the most is asked for: their order must not matter.
  */
-#ifndef SWARF_SWEEP_PACK_H
-#define SWARF_SWEEP_PACK_H
+#ifndef SWARF_BASE_PACK_H
+#define SWARF_BASE_PACK_H
 
-#include "sweep/lanes.h"
+#include "base/lanes.h"
 
 #if defined(__AVX512F__)
 enum { PACK = 8 };

@@ -4,8 +4,8 @@
  * + - * / are the compiler's own; minimum(a, b) is a < b ? a : b as in the processor's instruction, so that zeros and
  * NAN behave the same everywhere. Division and square root are the exactly rounded ones: estimates differ between
  * processors. */
-#ifndef SWARF_SWEEP_LANES_H
-#define SWARF_SWEEP_LANES_H
+#ifndef SWARF_BASE_LANES_H
+#define SWARF_BASE_LANES_H
 
 #include <math.h>
 #include <stdint.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Sixteen doubles side by side, beside lanes.h: + - * / are the compiler's own, and it makes registers of them; what
  * compares it would take apart. larger(a, b) is a > b ? a : b as in the processor's instruction. */
-#ifndef SWARF_SWEEP_DOUBLES_H
-#define SWARF_SWEEP_DOUBLES_H
+#ifndef SWARF_BASE_DOUBLES_H
+#define SWARF_BASE_DOUBLES_H
 
-#include "sweep/lanes.h"
+#include "base/lanes.h"
 
 typedef double doubles __attribute__((vector_size(128)));
 typedef int64_t longs __attribute__((vector_size(128)));

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Sixteen whole numbers side by side: what lanes.h lacks for walking through grids. + - & | << >> are the compiler's
  * own; >> of a negative number keeps the sign. */
-#ifndef SWARF_SWEEP_COUNTS_H
-#define SWARF_SWEEP_COUNTS_H
+#ifndef SWARF_BASE_COUNTS_H
+#define SWARF_BASE_COUNTS_H
 
-#include "sweep/lanes.h"
+#include "base/lanes.h"
 
 typedef int32_t counts __attribute__((vector_size(64)));
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Sixteen addresses side by side, beside counts.h and doubles.h: for lanes that read in different places. + is the
  * compiler's own. */
-#ifndef SWARF_SWEEP_LONGS_H
-#define SWARF_SWEEP_LONGS_H
+#ifndef SWARF_BASE_LONGS_H
+#define SWARF_BASE_LONGS_H
 
-#include "sweep/counts.h"
-#include "sweep/doubles.h"
+#include "base/counts.h"
+#include "base/doubles.h"
 
 INLINE longs address_of(const void *place)
 {
