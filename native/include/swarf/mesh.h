@@ -70,7 +70,7 @@ typedef struct swarf_contour_report {
  *
  *  The field alone tells faces to about as much. Of round ones 99 vertices of 100 are within 0.01 voxel where their
  *  radius is six voxels and more, single ones off by 0.03; of four to six within 0.02, single ones off by a tenth; of
- *  three to four by 0.13 and 0.27; of two to three by 0.22 and 0.43; in the mean by 0.002, 0.003, 0.01 and 0.04. Edges
+ *  three to four by 0.13 and 0.30; of two to three by 0.22 and 0.44; in the mean by 0.002, 0.003, 0.01 and 0.04. Edges
  *  are where the faces beside them meet, half of them within a hundredth and nearly all within a tenth of a voxel, but
  *  within half of one where a third face is nearer than three voxels, and where the field is no distance. It is used
  *  where the surface does not have the stock's signs. In a field with noise of a tenth of a voxel and more vertices
