@@ -23,7 +23,7 @@ typedef struct swarf_file_writer {
 } swarf_file_writer;
 
 /** Open for writing; a symbolic link stays and the file it leads to is replaced. On success close with
- * swarf_file_commit() or swarf_file_abandon(). */
+ *  swarf_file_commit() or swarf_file_abandon(). */
 swarf_status swarf_file_begin(const char *path, swarf_file_writer *writer);
 /** Flush, sync errors, rename; on failure the target is as it was and the temporary is gone. */
 swarf_status swarf_file_commit(swarf_file_writer *writer);

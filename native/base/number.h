@@ -5,7 +5,7 @@
 #define SWARF_BASE_NUMBER_H
 
 /** Read [+-] digits [. digits] [e [+-] digits] from `at` on, not beyond `end`: the longest such text, without blanks,
- * to within two units in the last place. Returns where it ends; NULL, with `out` untouched, when there is no number or
+ *  to within two units in the last place. Returns where it ends; NULL, with `out` untouched, when there is no number or
  *  none that a double can hold. Any thread. */
 const char *swarf_number_read(const char *at, const char *end, double *out);
 

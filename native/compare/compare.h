@@ -102,7 +102,7 @@ void swarf_samples_free(swarf_samples *parts, size_t count);
 /** Whether options leave out a place that is nearest to a triangle of the design. */
 int swarf_deviation_ignores(const swarf_deviation_options *o, uint32_t triangle, const float xyz[3]);
 /** Of measured->on_design those that these options are beyond; where the stock's band does not tell how far, their
- * value is what they are known to be beyond. */
+ *  value is what they are known to be beyond. */
 swarf_status swarf_find_missing(const swarf_measured *measured, const swarf_deviation_options *o,
                                 const swarf_progress *progress, double from, double to, swarf_samples *out);
 

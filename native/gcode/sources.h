@@ -17,7 +17,7 @@ void swarf_sources_destroy(swarf_sources *sources);
 swarf_status swarf_sources_add(swarf_sources *sources, swarf_program *program, const char *name, char *text,
                                size_t length, int owned, swarf_source **out);
 /** Where `label` is: in the text `here`, in another one that is there, else in a file of its name. *out is NULL if it
- * is nowhere. */
+ *  is nowhere. */
 swarf_status swarf_sources_find(swarf_sources *sources, swarf_machine *machine, swarf_source *here,
                                 swarf_flow_kind kind, const char *label, swarf_source **source,
                                 const swarf_flow_word **out);

@@ -137,7 +137,7 @@ enum { SWARF_BELOW_SHIFT = 16 };
  *   from end on     a layer that is joined and simplified too, so that facets of both sides are kept from cutting each
  *                   other, and made again by the next band; one placed and one crossed, as those below look there
  *
- * What two bands share are the vertices of the cells beside the plane between them, which stay. */
+ *  What two bands share are the vertices of the cells beside the plane between them, which stay. */
 typedef struct contour_band {
     int32_t first, end; /* multiples of SWARF_LEAF_DIM */
     double step;        /* mm; positions of all bands are rounded to multiples of it */
@@ -197,10 +197,10 @@ typedef struct contour_choice {
 
 /** The vertices and facets of the chosen blocks (NULL: of all) as one surface, in the memory of *out where that is
  *  enough. *marks (NULL: none are wanted) are the caller's to free: locked are the vertices of cells that care was
- * taken of, and those that bands share, known those of blocks that were not touched. */
+ *  taken of, and those that bands share, known those of blocks that were not touched. */
 swarf_status swarf_contour_gather(contour *work, const contour_choice *choice, swarf_facets *out, uint8_t **marks);
 /** Look at the touched blocks alone, with all vertices there, and note the cells that care was taken of and whose
- * facets still cut each other; *count: pairs of them. The blocks are left to be tiled and joined again. */
+ *  facets still cut each other; *count: pairs of them. The blocks are left to be tiled and joined again. */
 swarf_status swarf_contour_look(contour *work, size_t *count);
 /** Which edges were split, and where, so that later attempts need not look again. Starts as zeros. */
 typedef struct swarf_crease_memo {

@@ -20,8 +20,8 @@ typedef struct swarf_facet_pair {
 } swarf_facet_pair;
 
 /** All pairs, and each facet without area as a pair with itself, in an order that only depends on the facets; decided
- * exactly. The facets must be snapped. `fresh`: of each facet, pairs with none of them are left out; NULL: all are.
- * *pairs is freed by the caller with free(). */
+ *  exactly. The facets must be snapped. `fresh`: of each facet, pairs with none of them are left out; NULL: all are.
+ *  *pairs is freed by the caller with free(). */
 swarf_status swarf_facets_intersect(const swarf_facets *facets, const uint8_t *fresh, const swarf_progress *progress,
                                     double from, double to, swarf_facet_pair **pairs, size_t *count);
 

@@ -20,7 +20,7 @@ typedef struct simplify_facet {
 } simplify_facet;
 
 /** A corner is named by facet * 4 + k. A region: its own vertices, the facets that lie in it wholly (which it may
- * change) and those that reach out of it. Only vertices whose facets all lie in the region may go. */
+ *  change) and those that reach out of it. Only vertices whose facets all lie in the region may go. */
 typedef struct simplify_region {
     double *xyz;      /* of the region's vertices */
     uint32_t *global; /* their numbers in the whole mesh */

@@ -29,7 +29,7 @@ typedef struct swarf_rays {
 } swarf_rays;
 
 /** Where the rays of a picture come from: place (x, y), -1 .. 1 each, is seen along forward + x * right + y * up from
- * the eye, or, with parallel rays, along forward from eye + x * right + y * up. */
+ *  the eye, or, with parallel rays, along forward from eye + x * right + y * up. */
 typedef struct swarf_ray_source {
     double eye[3], forward[3], right[3], up[3];
     double back; /**< rays start this far (mm) behind that */

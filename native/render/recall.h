@@ -27,7 +27,7 @@ typedef struct swarf_line_mark {
 } swarf_line_mark;
 
 /** What a scene's scratch memory holds the middles of, and their light, lines and detail as far as they were asked for
- * (see picture.h). */
+ *  (see picture.h). */
 typedef struct swarf_recall {
     swarf_outlook outlook; /* its cutter is kept, so that no other one can take its place in memory */
     int is_known;

@@ -23,7 +23,7 @@ typedef struct swarf_field {
 } swarf_field;
 
 /** A cube of voxels with its low corner at `corner`. `values` (NULL where the surface is nowhere within reach) are
- * those of a leaf, edge 8, in mm, x * 64 + y * 8 + z; else the whole cube is `inside` or not. */
+ *  those of a leaf, edge 8, in mm, x * 64 + y * 8 + z; else the whole cube is `inside` or not. */
 typedef swarf_status (*swarf_field_fn)(void *context, const int32_t corner[3], int edge, const float *values,
                                        int inside);
 

@@ -67,7 +67,7 @@ void swarf_box_tree_nearest(const swarf_box_tree *tree, const swarf_corners *cor
 double swarf_corners_closest(const swarf_corners *triangle, const double point[3], double closest[3], int *feature);
 
 /** Call `see` with the number of every box of a level of the tree (0: the place of a triangle, 1: a group of level 0,
- * ...) that comes within `reach` of the box lo .. hi, until it returns 0. */
+ *  ...) that comes within `reach` of the box lo .. hi, until it returns 0. */
 typedef int (*swarf_box_fn)(void *context, size_t number);
 void swarf_box_tree_near(const swarf_box_tree *tree, const double lo[3], const double hi[3], double reach,
                          unsigned level, swarf_box_fn see, void *context);

@@ -6,9 +6,9 @@
 #include "stock/stock.h"
 
 /** Volume in mm3 of a stock that has been entered (untouched faces count by their formula): every voxel counts by
- * clamp(1/2 - d / h, 0, 1), which is exact for planes along the axes and of second order in the voxel h for curved
- * faces (a cylinder of radius R counts as pi (R^2 + h^2 / 12)) and for edges: at a right-angled convex edge material is
- * overcounted by up to h^2 / 4 per mm of it, h^2 / 13 on average; concave edges are undercounted as much. */
+ *  clamp(1/2 - d / h, 0, 1), which is exact for planes along the axes and of second order in the voxel h for curved
+ *  faces (a cylinder of radius R counts as pi (R^2 + h^2 / 12)) and for edges: at a right-angled convex edge material
+ *  is overcounted by up to h^2 / 4 per mm of it, h^2 / 13 on average; concave edges are undercounted as much. */
 swarf_status swarf_measure_volume(const swarf_stock *stock, double *out);
 
 /** Box in mm that no material is outside of: exact for a block whose faces have no leaves yet (before it was cut), else

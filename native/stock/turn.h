@@ -7,7 +7,7 @@
 #include "swarf/stock.h"
 
 /** A copy of `stock` whose lattice of voxels moves with it. The placement must turn by quarters only. `memory_limit`:
- * as in swarf_stock_options, of the copy. */
+ *  as in swarf_stock_options, of the copy. */
 swarf_status swarf_stock_turn(swarf_stock *stock, const swarf_placement *placement, size_t memory_limit,
                               const swarf_progress *progress, swarf_stock **out);
 

@@ -61,7 +61,7 @@ void swarf_undo_forget(swarf_undo *undo, size_t count);
 
 /** Give a stock the content of another one of the same layout, changing and stamping only what differs. With `undo`
  *  what was there is kept in a layer on top, for which the stock must be one that cutting leads from to `other`. When
- * it fails the stock stands in between. */
+ *  it fails the stock stands in between. */
 swarf_status swarf_undo_match(swarf_undo *undo, swarf_stock *stock, const swarf_stock *other);
 
 #endif

@@ -31,7 +31,7 @@ typedef struct swarf_touch_bound {
 } swarf_touch_bound;
 
 /** What a point sees of a trace. Within s of it no value is below raw - s, where that is above 0; raw is not above 0
- * where `value` is below. */
+ *  where `value` is below. */
 typedef struct swarf_touch {
     double value, raw;
     double gradient[3]; /* of value, unit */

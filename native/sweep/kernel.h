@@ -31,7 +31,7 @@ typedef struct swarf_leaf_cut {
 
 typedef struct swarf_kernel {
     /** For each of up to BLOCKS_AT_ONCE blocks of one size, keep of the tracks `in` those that can change a value in
-     * it: out[b] and out_count[b]. Returns the bits of the blocks that are all cut away (their lists mean nothing). */
+     *  it: out[b] and out_count[b]. Returns the bits of the blocks that are all cut away (their lists mean nothing). */
     unsigned (*cull)(const swarf_body *body, const swarf_column *column, const int32_t *in, size_t count,
                      const swarf_block *blocks, size_t block_count, int32_t *const *out, size_t *out_count);
     /** values = max(values, -sweep) over all tracks of the list; 0: nothing was within reach, outputs are not set. */
@@ -40,7 +40,7 @@ typedef struct swarf_kernel {
     /** Signed distance in voxels from the column's middle to the tracks of a list, as in a leaf. */
     float (*distance)(const swarf_body *body, const swarf_column *column, const int32_t *list, size_t count);
     /** Signed distances (mm, clamped to the background) to a block at the 512 voxels of a leaf, the mask of those in
-     * the band, and the least. */
+     *  the band, and the least. */
     void (*block)(const swarf_slabs *slabs, float voxel, float background, float values[512], uint64_t mask[8],
                   float *least);
     /** Material in a leaf, in voxels: the sum of clamp(1/2 - value * scale, 0, 1), scale being 1 / voxel. */

@@ -11,6 +11,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "stocks.h"
 
@@ -266,6 +267,26 @@ static struct {
     swarf_surface *surface;
 } part;
 
+/* Longer than a band, which is written to a file. */
+static struct {
+    swarf_stock *stock;
+    char file[32];
+} bar = {.file = "/tmp/swarf-memory-XXXXXX.stl"};
+
+static void make_bar(void)
+{
+    const swarf_box box = {{0, 0, -0.6}, {14, 0.6, 0}};
+    const int file = mkstemps(bar.file, 4);
+    CHECK(file >= 0 && close(file) == 0);
+    bar.stock = stock_block(&box, 0.2);
+}
+
+static void release_bar(void)
+{
+    swarf_stock_destroy(bar.stock);
+    CHECK(unlink(bar.file) == 0);
+}
+
 static void make_part(void)
 {
     static const struct {
@@ -353,6 +374,21 @@ static swarf_status contour_kept(struct things *t)
     return contour(t, part.surface, 0, 1);
 }
 
+static swarf_status contour_bands(struct things *t)
+{
+    char bytes[4096];
+    const swarf_contour_options options = swarf_contour_options_default();
+    const swarf_status status = swarf_mesh_stream(bar.stock, &options, 1, bar.file, NULL, &t->report);
+    if (status != SWARF_OK) return status;
+    FILE *file = fopen(bar.file, "rb");
+    if (!CHECK(file != NULL)) return SWARF_ERROR_IO;
+    t->volume = t->report.surface_mm3;
+    t->hash = 0xCBF29CE484222325u;
+    for (size_t got; (got = fread(bytes, 1, sizeof bytes, file)) > 0;) t->hash = hash_bytes(t->hash, bytes, got);
+    CHECK(fclose(file) == 0);
+    return SWARF_OK;
+}
+
 struct step {
     const char *name;
     swarf_status (*fn)(struct things *t);
@@ -377,6 +413,10 @@ static const struct step contours[] = {
     {"contour the surface", contour_surface},
     {"contour finely", contour_fine},
     {"contour and keep the volume", contour_kept},
+};
+
+static const struct step bands[] = {
+    {"contour band by band", contour_bands},
 };
 
 static void release(struct things *t)
@@ -474,11 +514,15 @@ int main(void)
     CHECK_OK(swarf_threads_set(1)); /* the same allocation is the k-th in each round */
     const double milled = fail_each(all, sizeof all / sizeof *all, 1);
     CHECK(milled > 500 && milled < 1000);
+    const size_t stride = test_size() == TEST_FULL ? 1 : 5;
     make_part();
     for (size_t i = 0; i < sizeof contours / sizeof *contours; i++) {
-        const double part_mm3 = fail_each(&contours[i], 1, test_size() == TEST_FULL ? 1 : 5);
+        const double part_mm3 = fail_each(&contours[i], 1, stride);
         CHECK(part_mm3 > 1 && part_mm3 < 2);
     }
     release_part();
+    make_bar();
+    CHECK_NEAR(fail_each(bands, 1, stride), 14 * 0.6 * 0.6, 1e-3);
+    release_bar();
     return test_end();
 }

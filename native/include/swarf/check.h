@@ -72,7 +72,7 @@ SWARF_API swarf_status swarf_stock_check(swarf_stock *stock, const swarf_program
                                          const swarf_progress *progress, swarf_check **out);
 SWARF_API void swarf_check_destroy(swarf_check *check);
 /** What swarf_stock_simulate() tells of the same moves: removed volumes, moves that could not be simulated. Owned by
- * the check. */
+ *  the check. */
 SWARF_API const swarf_simulation *swarf_check_simulation(const swarf_check *check);
 /** Loads of the moves played; NULL unless asked for. Owned by the check. */
 SWARF_API const swarf_loads *swarf_check_loads(const swarf_check *check);

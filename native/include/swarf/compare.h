@@ -136,8 +136,8 @@ SWARF_API swarf_status swarf_compare_overlap(swarf_stock *stock, const swarf_sol
                                              const swarf_progress *progress, double *depth, double point[3]);
 
 /** Deviations (mm, positive: material left, less an allowance) of the `count` pixels of a picture that see the stock,
- * NAN for the others. `position` has 3 doubles and `seen` a swarf_seen per pixel, as swarf_picture_buffers has them.
- * Any thread, all cores. SWARF_ERROR_ARGUMENT: NULL, an allowance that is not finite. */
+ *  NAN for the others. `position` has 3 doubles and `seen` a swarf_seen per pixel, as swarf_picture_buffers has them.
+ *  Any thread, all cores. SWARF_ERROR_ARGUMENT: NULL, an allowance that is not finite. */
 SWARF_API swarf_status swarf_deviation_pixels(const swarf_solid *design, const double *position, const uint8_t *seen,
                                               size_t count, double allowance, const swarf_progress *progress,
                                               double *value);

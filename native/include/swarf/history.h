@@ -45,8 +45,8 @@ typedef struct swarf_history_held {
 /** A history that stands before the first move of a program (kept) with the tools for it (bodies of their flutes are
  *  made). The stock stays the caller's: it must live as long as the history, may be read between calls, and whatever
  *  else changes it ends the history (see swarf_history_seek()). Moves whose tool is not in `tools` or has no flutes,
- * and moves of turned axes, cut nothing. `options` may be NULL. SWARF_ERROR_ARGUMENT, SWARF_ERROR_MEMORY,
- * SWARF_ERROR_BUSY: the stock is in use by another thread. */
+ *  and moves of turned axes, cut nothing. `options` may be NULL. SWARF_ERROR_ARGUMENT, SWARF_ERROR_MEMORY,
+ *  SWARF_ERROR_BUSY: the stock is in use by another thread. */
 SWARF_API swarf_status swarf_history_create(swarf_stock *stock, const swarf_program *program, const swarf_tool *tools,
                                             size_t tool_count, const swarf_history_options *options,
                                             swarf_history **out);
@@ -54,7 +54,7 @@ SWARF_API swarf_status swarf_history_create(swarf_stock *stock, const swarf_prog
 SWARF_API void swarf_history_destroy(swarf_history *history);
 
 /** Make the stock what it is after the first `move` moves (0 .. all of them) and the part `fraction` (0 .. 1) of the
- * next one's path. 1 is the position after that move. Stamps (swarf_stock_changed()) tell what changed either way.
+ *  next one's path. 1 is the position after that move. Stamps (swarf_stock_changed()) tell what changed either way.
  *  SWARF_ERROR_ARGUMENT: there is no such position; or the stock was changed by someone else, which a history cannot go
  *  on from. SWARF_ERROR_CANCELLED: at once; the stock stands between moves where swarf_history_move() says.
  *  SWARF_ERROR_MEMORY: the same, except when it ran out while putting back: then the stock holds nothing to be read

@@ -99,7 +99,7 @@ SWARF_API swarf_status swarf_mesh_stream(swarf_stock *stock, const swarf_contour
 
 /** What made each triangle: the point of the surface, after its first `moves`, that is nearest along the normal to a
  *  place beside the triangle's middle, no farther than reach_mm (0: a voxel); `move` -2 where there is none. `out`: one
- * per triangle. */
+ *  per triangle. */
 SWARF_API swarf_status swarf_mesh_origins(const swarf_mesh *mesh, const swarf_surface *surface, size_t moves,
                                           double reach_mm, const swarf_progress *progress, swarf_surface_point *out);
 
@@ -184,7 +184,7 @@ SWARF_API swarf_status swarf_mesh_create_shells(const swarf_mesh *mesh, const sw
                                                 const uint32_t *shells, size_t count, swarf_mesh **out);
 
 /** Cut a closed mesh by a plane into what lies against `normal` (below) and along it (above), each closed by caps; a
- * side without material becomes an empty mesh. Volumes add up, but for the rounding of new vertices to floats.
+ *  side without material becomes an empty mesh. Volumes add up, but for the rounding of new vertices to floats.
  *  SWARF_ERROR_GEOMETRY: not closed; SWARF_ERROR_ARGUMENT: not finite, no normal. */
 SWARF_API swarf_status swarf_mesh_split(const swarf_mesh *mesh, const double point[3], const double normal[3],
                                         swarf_mesh **below, swarf_mesh **above);

@@ -22,10 +22,10 @@ typedef enum swarf_view {
 
 /** A camera: looks from `eye` to `target`, `up` upwards. Perspective has the vertical opening angle `fov_deg` and shows
  *  what is before the eye. Parallel rays show `height_mm` of the world from the bottom to the top of the picture,
- * before and behind the eye. Places in a picture are x to the right and y upwards, both -1 .. 1 at its borders; its
- * aspect is width / height. What the functions change is the camera they are given; all: any thread,
- * SWARF_ERROR_ARGUMENT for NULL, a number that is not finite, eye at target, `up` along the view, height or angle out
- * of range. */
+ *  before and behind the eye. Places in a picture are x to the right and y upwards, both -1 .. 1 at its borders; its
+ *  aspect is width / height. What the functions change is the camera they are given; all: any thread,
+ *  SWARF_ERROR_ARGUMENT for NULL, a number that is not finite, eye at target, `up` along the view, height or angle out
+ *  of range. */
 typedef struct swarf_camera {
     double eye[3];
     double target[3];

@@ -47,7 +47,7 @@ typedef struct swarf_surface_point {
 } swarf_surface_point;
 
 /** The set-up of a move as points name it, and its index in that set-up's program: 0 the surface's own, 1 the one
- * before
+ *  before
  *  ...; index -1 and the number of set-ups before for the first shape of all. Other numbers come out as that. */
 SWARF_API void swarf_surface_origin(const swarf_surface *surface, int64_t move, int *set_up, int64_t *index);
 
@@ -107,7 +107,7 @@ SWARF_API int swarf_surface_crossing(const swarf_surface_near *near, const doubl
                                      double tolerance_mm, double *t, swarf_surface_point *out);
 
 /** What made the surface near `count` points: the zero along their directions as swarf_surface_refine() finds it, as
- * seen from there; move -2 where there is none. */
+ *  seen from there; move -2 where there is none. */
 SWARF_API swarf_status swarf_surface_find(const swarf_surface *surface, size_t moves, const double *points,
                                           const double *directions, size_t count, double reach_mm,
                                           const swarf_progress *progress, swarf_surface_point *out);
