@@ -265,21 +265,23 @@ swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *op
     swarf_contour_table_fill(&work->table);
     SWARF_TRY(swarf_parallel_for(work->block_count, cross_one, work, progress, 0, 0.3));
     SWARF_TRY(swarf_parallel_for(work->block_count, place_one, work, progress, 0.3, 0.56));
-    SWARF_TRY(swarf_parallel_for(work->block_count, unfold_one, work, progress, 0.56, 0.58));
-    SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, progress, 0.58, 0.6));
+    if (work->surface) { /* by the field vertices stay in their cells */
+        SWARF_TRY(swarf_parallel_for(work->block_count, unfold_one, work, progress, 0.56, 0.58));
+        SWARF_TRY(swarf_parallel_for(work->block_count, place_again, work, progress, 0.58, 0.6));
+    }
+    const double voxel_mm3 = pow(work->layout->voxel, 3);
     for (size_t i = 0; i < work->block_count; i++) {
         const contour_block *block = &work->blocks[i];
         if (!swarf_contour_is_within(work, block, 0)) continue;
         report->sharp_vertices += block->sharp_count;
         report->exact_vertices += block->exact_count;
-        report->unseen_mm3 += (double)block->unseen * pow(work->layout->voxel, 3);
-        for (int x = 0; x < 8; x++) report->parted_cells -= (size_t)__builtin_popcountll(block->cell_mask[x]);
-        report->parted_cells += block->vertex_count;
+        report->unseen_mm3 += (double)block->unseen * voxel_mm3;
+        report->parted_cells += block->parted_count;
     }
     const swarf_status status = settle(&s);
     for (size_t i = 0; i < work->block_count; i++)
         if (swarf_contour_is_within(work, &work->blocks[i], 0))
-            report->surface_mm3 += work->blocks[i].within * pow(work->layout->voxel, 3);
+            report->surface_mm3 += work->blocks[i].within * voxel_mm3;
     swarf_facets_memo_free(&memo);
     swarf_facets_known_free(&known);
     swarf_crease_memo_free(&creases);

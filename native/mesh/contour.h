@@ -93,7 +93,8 @@ typedef struct contour_block {
     int amiss;               /* were touched at any attempt */
     int finished;            /* of the band before: only looked at */
     uint32_t vertex_count;
-    uint32_t left_count; /* vertices without those that others stand for */
+    uint32_t parted_count; /* more vertices than cells */
+    uint32_t left_count;   /* vertices without those that others stand for */
     uint32_t facet_count;
     uint32_t full_count;   /* facets, had there been no tiles */
     uint32_t centre_count; /* vertices on crossings, of quadrilaterals cut into four */

@@ -285,6 +285,7 @@ swarf_status swarf_contour_place(contour *work, contour_block *block)
     block->cells = NULL;
     block->vertices = NULL;
     const uint32_t cell_count = list_cells(&p, cells);
+    block->parted_count = block->vertex_count - cell_count;
     if (cell_count == 0) return SWARF_OK;
     block->cells = malloc(cell_count * sizeof *cells);
     block->vertices = malloc(block->vertex_count * sizeof *block->vertices);
