@@ -325,18 +325,10 @@ typedef struct contour_plane {
     double normal[3]; /* unit */
 } contour_plane;
 
-enum { SWARF_CONTOUR_FLATS = 8 };
-
-/** Planes of flat faces that the exact surface has in a block, in voxels from its low corner. */
-typedef struct contour_flats {
-    contour_plane plane[SWARF_CONTOUR_FLATS];
-    int count;
-} contour_flats;
-
 /** The vertex of a cycle in the cell `at` of the block where the field is flat and the exact surface, if there is one,
- *  has the same plane: sets *flat, 0 where it is another vertex. Planes found are added to `flats`. */
-swarf_status swarf_contour_vertex_flat(contour_flats *flats, contour_near *near, const int at[3],
-                                       const contour_polygon *polygon, double out[3], int *flat);
+ *  has the same plane: sets *flat, 0 where it is another vertex. */
+swarf_status swarf_contour_vertex_flat(contour_near *near, const int at[3], const contour_polygon *polygon,
+                                       double out[3], int *flat);
 
 /** Middle of the crossings. */
 void swarf_contour_middle(const contour_polygon *polygon, double out[3]);

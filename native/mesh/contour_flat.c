@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Vertices of cells about which the field is flat: the middle of their crossings, once a look at the exact surface, if
- * there is one, has found the plane of the face there. Each plane is looked for once in a block. */
+/* Vertices of cells about which the field is flat: the middle of their crossings, if the exact surface, where there is
+ * one, has the same plane there. */
 #include "base/status.h"
 #include "mesh/contour.h"
 #include "surface/surface.h"
@@ -21,8 +21,7 @@ static double dot(const double a[3], const double b[3])
 static int is_plane(const contour_plane *plane, const double point[3], const double normal[3])
 {
     const double *n = plane->normal, *o = plane->point;
-    const double away = n[0] * (point[0] - o[0]) + n[1] * (point[1] - o[1]) + n[2] * (point[2] - o[2]);
-    return fabs(away) <= same_plane && dot(n, normal) >= same_plane_cosine;
+    return fabs(dot(n, point) - dot(n, o)) <= same_plane && dot(n, normal) >= same_plane_cosine;
 }
 
 /* Whether the field is flat round all crossings, and these on one plane. */
@@ -37,45 +36,32 @@ static int is_flat(const contour_polygon *polygon, const double middle[3])
     return 1;
 }
 
-/* Whether a plane of the block that is known passes there. */
-static int is_known(const contour_flats *flats, const double point[3], const double normal[3])
-{
-    for (int i = 0; i < flats->count; i++)
-        if (is_plane(&flats->plane[i], point, normal)) return 1;
-    return 0;
-}
-
-/* Look for the plane on the exact surface. */
-static swarf_status look_for(contour_flats *flats, contour_near *near, const int at[3], const contour_polygon *polygon,
+/* Look for the plane on the exact surface: a groove between voxels that is narrow enough the field does not show. */
+static swarf_status look_for(contour_near *near, const int at[3], const contour_polygon *polygon,
                              const double middle[3], int *found)
 {
     const swarf_surface_near *surface;
     swarf_surface_point seen;
     contour_plane plane;
-    double world[3], point[3];
+    double world[3];
     SWARF_TRY(swarf_contour_near_get(near, at, &surface));
     for (int k = 0; k < 3; k++) world[k] = polygon->origin[k] + middle[k] * polygon->voxel;
     swarf_surface_evaluate(surface, world, &seen);
     for (int k = 0; k < 3; k++) {
-        point[k] = at[k] + middle[k];
         plane.normal[k] = seen.normal[k];
-        plane.point[k] = point[k] - seen.value / polygon->voxel * seen.normal[k];
+        plane.point[k] = middle[k] - seen.value / polygon->voxel * seen.normal[k];
     }
-    *found = is_plane(&plane, point, polygon->normal[0]);
-    if (*found && flats->count < SWARF_CONTOUR_FLATS) flats->plane[flats->count++] = plane;
+    *found = is_plane(&plane, middle, polygon->normal[0]);
     return SWARF_OK;
 }
 
-swarf_status swarf_contour_vertex_flat(contour_flats *flats, contour_near *near, const int at[3],
-                                       const contour_polygon *polygon, double out[3], int *flat)
+swarf_status swarf_contour_vertex_flat(contour_near *near, const int at[3], const contour_polygon *polygon,
+                                       double out[3], int *flat)
 {
     double middle[3];
     swarf_contour_middle(polygon, middle);
     *flat = is_flat(polygon, middle);
-    if (*flat && near->work->surface) {
-        const double point[3] = {at[0] + middle[0], at[1] + middle[1], at[2] + middle[2]};
-        if (!is_known(flats, point, polygon->normal[0])) SWARF_TRY(look_for(flats, near, at, polygon, middle, flat));
-    }
+    if (*flat && near->work->surface) SWARF_TRY(look_for(near, at, polygon, middle, flat));
     if (!*flat) return SWARF_OK;
     memcpy(out, middle, sizeof middle);
     swarf_contour_clamp(&polygon->bounds, out);

@@ -12,7 +12,6 @@ typedef struct placing {
     contour *work;
     contour_block *block;
     contour_near near;
-    contour_flats flats;
     int fetched; /* whether values are there: few cells need them */
     float values[SWARF_HALO * SWARF_HALO * SWARF_HALO];
 } placing;
@@ -183,7 +182,7 @@ static swarf_status place_vertex(placing *p, const int at[3], int config, contou
         return SWARF_OK;
     }
     const swarf_surface_near *near;
-    SWARF_TRY(swarf_contour_vertex_flat(&p->flats, &p->near, at, polygon, out, flat));
+    SWARF_TRY(swarf_contour_vertex_flat(&p->near, at, polygon, out, flat));
     if (*flat) {
         block->exact_count += p->work->surface != NULL;
         return SWARF_OK;
@@ -275,7 +274,6 @@ swarf_status swarf_contour_place(contour *work, contour_block *block)
     p.work = work;
     p.block = block;
     p.near = (contour_near){.work = work, .block = block};
-    p.flats.count = 0;
     p.fetched = 0;
     block->sharp_count = block->exact_count = 0;
     memset(block->flat_mask, 0, sizeof block->flat_mask);

@@ -490,8 +490,8 @@ static void find_bounds(job *j)
     }
 }
 
-/* Whether known vertices can be trusted; the next call can trust those of this one. */
-static int are_known(const job *j, swarf_facets_memo *memo)
+/* Note where the vertices lie, so that the next call can trust those it knows; returns whether this one can. */
+static int note_bounds(const job *j, swarf_facets_memo *memo)
 {
     const int same = memcmp(memo->least, j->least, sizeof j->least) == 0 && /* the same cubes */
                      memcmp(memo->most, j->most, sizeof j->most) == 0;
@@ -597,7 +597,7 @@ swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double
     if (memo && !memo->pass) memo->pass = calloc(PASSES, sizeof *memo->pass);
     if (memo && !memo->pass) status = swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for simplifying");
     find_bounds(&j);
-    j.trusted = memo && !budget && are_known(&j, memo);
+    j.trusted = memo && !budget && note_bounds(&j, memo);
     const int steps = budget ? ERROR_STEPS : 1;
     double at = from;
     const double part = (to - from) / (steps * PASSES);

@@ -22,6 +22,10 @@ static const double vertical = 1e-9;
 /* Least moments are known to this many mm, those of curves among several are told apart to `apart`. */
 static const double settled = 1e-10, apart = 1e-6;
 
+/* mm: nearer to a line than this the direction from it is noise, or there is none: a tangent of the distance there is
+ * level. */
+static const double no_direction = 1e-6;
+
 static double clamp(double value, double lo, double hi)
 {
     return value < lo ? lo : value > hi ? hi : value;
@@ -228,9 +232,10 @@ static void touch_level(const swarf_trace *trace, double rho, double gx, double 
             nz = pz;
             piece = k;
         }
-        const double gradient[3] = {nr * gx, nr * gy, nz};
+        const double gradient[3] = {nr * gx, nr * gy, nz}, over[3] = {0, 0, nz};
         /* a convex function of the plan distance, with which it never falls, to a segment */
-        if (trace->kind == TRACE_LEVEL && body->component_count <= 2) put_bound(best, value, gradient);
+        if (trace->kind == TRACE_LEVEL && body->component_count <= 2)
+            put_bound(best, rho > no_direction ? value : value - rho, rho > no_direction ? gradient : over);
         const double at = trace->kind == TRACE_LEVEL && trace->run == 0 && body->exact[piece].upper ? trace->t1 : t;
         offer(best, value, value, gradient, at, (int32_t)piece);
     }
@@ -339,10 +344,11 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
         return;
     }
     const double plane_under = ((s - R) * m + bottom - z) * im, plane_over = (z - top - (s + R) * m) * im;
-    double raw = rho - R, ts = rho > 0 ? beyond / rho : 1, tw = rho > 0 ? w / rho : 0, tz = 0;
+    const int beside = rho > no_direction;
+    double raw = rho - R, bound = beside ? raw : -R, ts = beside ? beyond / rho : 0, tw = beside ? w / rho : 0, tz = 0;
     const double flat = swarf_most(low, high), plane = swarf_most(plane_under, plane_over);
     if (flat > raw || plane > raw) {
-        raw = swarf_most(flat, plane);
+        raw = bound = swarf_most(flat, plane);
         const int up = flat >= plane ? high > low : plane_over > plane_under;
         ts = flat >= plane ? 0 : up ? -m * im : m * im;
         tw = 0;
@@ -351,7 +357,7 @@ static void touch_cylinder(const swarf_trace *trace, const double p[3], double R
     offer(best, value, raw, gradient, t, touched);
     best->exact = 0;
     const double tangent[3] = {ts * trace->ux - tw * trace->uy, ts * trace->uy + tw * trace->ux, tz};
-    put_bound(best, raw, tangent);
+    put_bound(best, bound, tangent);
 }
 
 static void touch_ball(const swarf_trace *trace, const double p[3], const double *most, swarf_touch *best)
@@ -368,7 +374,7 @@ static void touch_ball(const swarf_trace *trace, const double p[3], const double
     if (most && away - R >= *most) return;
     const double gradient[3] = {away > 0 ? e[0] / away : 0, away > 0 ? e[1] / away : 0, away > 0 ? e[2] / away : -1};
     offer(best, away - R, away - R, gradient, trace->t0 + (trace->t1 - trace->t0) * q / length, 0);
-    put_bound(best, away - R, gradient);
+    put_bound(best, away > no_direction ? away - R : -R, away > no_direction ? gradient : (const double[3]){0, 0, 0});
 }
 
 /* ---- any cutter on tilted lines and curves ------------------------------------------------------------------------

@@ -504,9 +504,62 @@ static void check_surfaces(void)
     swarf_cutter_release(cutter);
 }
 
+/* Grooves and dimples between voxels that are too shallow for the field to show, and a deeper groove along an axis. */
+static void check_shallow(void)
+{
+    enum { ROUNDS = 12 };
+    test_random random = test_random_begin(42);
+    swarf_cutter *cutter = NULL;
+    if (!CHECK_OK(swarf_cutter_parse("chamfer:d=4,l=6,a=150", &cutter))) exit(test_end());
+    const swarf_section section = {.tool = 1};
+    const swarf_tool tool = {1, 0, cutter};
+    size_t below = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        const double x = test_random_in(&random, 0, voxel), y = test_random_in(&random, 0, voxel);
+        const double z = block.hi[2] - test_random_in(&random, 0.03, 0.2) * voxel;
+        part truth = {.body = oracle_body_of(cutter, SWARF_PART_FLUTES),
+                      .paths = {oracle_line(-4, y, z, 0.1, y, z), oracle_line(x + 3, -4, z, x + 3, 4, z),
+                                oracle_line(x - 2, y - 3, 1, x - 2, y - 3, z),
+                                oracle_line(-4, y + 4, -0.3, 1, y + 4, -0.3)},
+                      .count = MOST_PATHS};
+        swarf_program *program = NULL;
+        swarf_surface *surface = NULL;
+        swarf_mesh *mesh = NULL;
+        swarf_stock *stock = stock_block(&block, voxel), *first = stock_block(&block, voxel);
+        CHECK_OK(swarf_program_create((double[3]){0, 0, 9}, &program));
+        CHECK_OK(swarf_program_add_operation(program, "cut"));
+        CHECK_OK(swarf_program_set_section(program, &section));
+        for (int i = 0; i < truth.count; i++) {
+            CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_POSITION, truth.paths[i].start, 0, 1));
+            CHECK_OK(swarf_program_add_line(program, SWARF_MOVE_FEED, truth.paths[i].end, 100, 1));
+        }
+        CHECK_OK(swarf_stock_cut(stock, cutter, truth.paths, (size_t)truth.count, NULL));
+        if (!CHECK_OK(swarf_surface_create(first, program, &tool, 1, NULL, &surface))) exit(test_end());
+        swarf_contour_options options = swarf_contour_options_default();
+        options.surface = surface;
+        if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL))) exit(test_end());
+        const swarf_triangles t = swarf_mesh_triangles(mesh);
+        double worst = 0;
+        for (size_t i = 0; i < t.vertex_count; i++) {
+            const double p[3] = {t.xyz[3 * i], t.xyz[3 * i + 1], t.xyz[3 * i + 2]};
+            worst = fmax(worst, fabs(true_value(&truth, p)) / voxel);
+            below += p[2] < block.hi[2] - 0.02 * voxel && p[2] > z;
+        }
+        CHECK_NEAR(worst, 0, 0.01);
+        swarf_mesh_release(mesh);
+        swarf_surface_release(surface);
+        swarf_program_release(program);
+        swarf_stock_destroy(stock);
+        swarf_stock_destroy(first);
+    }
+    CHECK(below > 100);
+    swarf_cutter_release(cutter);
+}
+
 int main(void)
 {
     check_surfaces();
+    check_shallow();
     const test_random begin = test_random_begin(41);
     const int full = getenv("SWARF_TEST_FULL") != NULL; /* else every other motion of each cutter */
     for (int index = 0; index < CASE_CUTTERS; index++)

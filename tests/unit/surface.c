@@ -233,9 +233,56 @@ static void check_turned(void)
     swarf_cutter_release(cutter);
 }
 
+/* A box about a point of a move's axis, where a cutter's distance has a crease, sees what boxes about the points do: a
+ * little below the top of the block, which is the nearer of the two in places. */
+static void check_on_axis(void)
+{
+    enum { POINTS = 300 };
+    static const double ends[][3] = {{9, 0, 0}, {-9, 0, 0}, {0, 9, 0}, {0, 0, 6}, {9, 0, 3}, {-9, 0, 3}, {0, 9, -3}};
+    const double half = 3;
+    test_random random = test_random_begin(23);
+    long compared = 0;
+    for (int index = 0; index < CASE_CUTTERS; index++)
+        for (size_t e = 0; e < sizeof ends / sizeof *ends; e++) {
+            const char *name;
+            swarf_cutter *cutter = case_cutter(index, &name);
+            const double rise =
+                test_random_in(&random, 0, 1) < 0.5 ? 0 : oracle_body_of(cutter, SWARF_PART_FLUTES).radius;
+            swarf_path path = {.has_motion = 1};
+            double middle[3];
+            for (int k = 0; k < 3; k++) {
+                path.start[k] = -0.5 * ends[e][k];
+                path.end[k] = 0.5 * ends[e][k];
+                middle[k] = k == 2 ? rise : 0;
+            }
+            const swarf_box below = {{-25, -25, -25}, {25, 25, rise + 0.2}};
+            swarf_surface *surface = make_surface(&below, 0.5, &path, 1, cutter);
+            swarf_surface_near *wide = near_point(surface, middle, half);
+            for (int i = 0; i < POINTS; i++) {
+                swarf_surface_point a, b;
+                double p[3];
+                for (int k = 0; k < 3; k++) p[k] = middle[k] + test_random_in(&random, -half, half);
+                swarf_surface_near *near = near_point(surface, p, half);
+                swarf_surface_evaluate(near, p, &a);
+                swarf_surface_evaluate(wide, p, &b);
+                swarf_surface_near_destroy(near);
+                if (fabs(a.value) > half) continue;
+                compared++;
+                if (!CHECK_NEAR(b.value, a.value, 1e-9))
+                    printf("%s to %g %g %g at %g %g %g\n", name, path.end[0], path.end[1], path.end[2], p[0], p[1],
+                           p[2]);
+            }
+            swarf_surface_near_destroy(wide);
+            swarf_surface_release(surface);
+            swarf_cutter_release(cutter);
+        }
+    CHECK(compared > 5000);
+}
+
 int main(void)
 {
     check_turned();
+    check_on_axis();
     check_closed_forms();
     check_refine();
     check_cases();
