@@ -45,7 +45,7 @@ void swarf_facets_memo_free(swarf_facets_memo *memo);
 /** Remove vertices while the surface stays within error_mm of what came in, keeping edges sharper than 25 degrees,
  *  corners and topology; stops at `budget` facets (0: none). `marks` of vertices may be NULL: none; they go with the
  *  vertices, known ones lose that mark where what became of them may differ. `memo` may be NULL too, and is not used
- * with a budget. The error of what is left, and the volume lost, are in the facets. */
+ *  with a budget. The error of what is left, and the volume lost, are in the facets. */
 swarf_status swarf_facets_simplify(swarf_facets *facets, double error_mm, double voxel, size_t budget, uint8_t *marks,
                                    swarf_facets_memo *memo, const swarf_progress *progress, double from, double to);
 
