@@ -66,6 +66,11 @@ INLINE double pack_most(unsigned bits, pack a)
 {
     return _mm512_mask_reduce_max_pd((__mmask8)bits, (__m512d)a);
 }
+/* In any order: of whole numbers. */
+INLINE double pack_sum(pack a)
+{
+    return _mm512_reduce_add_pd((__m512d)a);
+}
 
 #elif defined(__AVX2__)
 
@@ -103,6 +108,10 @@ INLINE double pack_most(unsigned bits, pack a)
     const __m128d two = _mm_max_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
     return _mm_cvtsd_f64(_mm_max_sd(two, _mm_unpackhi_pd(two, two)));
 }
+INLINE double pack_sum(pack a)
+{
+    return a[0] + a[1] + a[2] + a[3];
+}
 
 #else
 
@@ -136,6 +145,10 @@ INLINE double pack_most(unsigned bits, pack a)
 {
     a = pack_pick(bits, a, pack_of(-INFINITY));
     return a[0] > a[1] ? a[0] : a[1];
+}
+INLINE double pack_sum(pack a)
+{
+    return a[0] + a[1];
 }
 
 #endif

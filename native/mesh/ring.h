@@ -44,7 +44,20 @@ static inline double ring_score(double shape, double error, double limit)
     return sqrt(shape) * (1 - ring_score_error * error / limit);
 }
 
+static inline int ring_before(const ring *around, int j)
+{
+    return (j ? j : around->count) - 1;
+}
+
+static inline int ring_after(const ring *around, int j)
+{
+    return j + 1 < around->count ? j + 1 : 0;
+}
+
 typedef struct ring_kernel {
+    /** The edges of the surface, for `crease`. */
+    uint32_t (*find_creases)(const ring *around);
+
     /** Find `normal` from `at`, and whether the ring is flat: whether all facets have one true normal and the vertices
      *  lie in one plane across it, as near as the limit (mm) of the error allows. */
     void (*look_flat)(ring *around, double limit);
@@ -52,8 +65,9 @@ typedef struct ring_kernel {
     /** Find `dots`. */
     void (*find_dots)(ring *around);
 
-    /** Find `lift`. */
-    void (*find_lifts)(ring *around);
+    /** Find `lift`. Returns a bit for each vertex that it leaves within the limit (mm), and the least error of the
+     *  others, infinite without one. */
+    uint32_t (*find_lifts)(ring *around, double limit, double *least);
 
     /** Error and score of drawing the middle onto vertex j; 0 when the error is too much, a facet turns or becomes a
      *  needle, or the score is not above `least`: the error is then a lower bound of what it takes. */

@@ -2,8 +2,8 @@
 /* The kernels of ring.h, compiled once per instruction set; KERNEL_NAME is the table's name.
  *
  * A lane of a pack is a facet, or the neighbour with its number. Sets of them are bits: 32 for the whole ring, as many
- * as there are lanes for the pack from `base` on. Places of a ring come with the first again after the last, and with
- * room for a whole pack from there.
+ * as there are lanes for the pack from `base` on. Places and true normals of a ring come with the first again after the
+ * last, and with room for a whole pack from there.
  */
 #include "base/least.h"
 #include "base/pack.h"
@@ -11,6 +11,8 @@
 
 /* The vertices of flat rings are apart by this part of the limit. */
 static const double flat_part = 0.05;
+/* cos 25 degrees: sharper is an edge. On a ball of three voxels facets differ by up to 20. */
+static const double edge_cosine = 0.906;
 /* A facet may lean by 41 degrees from the true normal of where it was made: far more than the error allows to a facet
  * of usual size, far less than turning over. */
 static const double least_cosine = 0.75;
@@ -77,16 +79,6 @@ INLINE unsigned lanes_of(uint32_t bits, int base)
     return bits >> base & ((1U << PACK) - 1);
 }
 
-INLINE int before_on(const ring *around, int j)
-{
-    return (j ? j : around->count) - 1;
-}
-
-INLINE int after_on(const ring *around, int j)
-{
-    return j + 1 < around->count ? j + 1 : 0;
-}
-
 /* Put the first after the last, too. */
 INLINE void close_ring(double of[3][RING_ROOM], int count)
 {
@@ -129,6 +121,18 @@ static void look_flat(ring *around, double limit)
     }
     most /= 32767;
     around->slab = !bent && most <= flat_part * limit ? most : -1;
+}
+
+static uint32_t find_creases(const ring *around)
+{
+    const int n = around->count;
+    uint32_t sharp = 0; /* bit i: whether the edge to vertex i + 1 is */
+    for (int base = 0; base < n; base += PACK) {
+        const pack cosine = dot(load3(around->true_normal, base), load3(around->true_normal, base + 1));
+        sharp |= pack_below(cosine, pack_of(edge_cosine * 32767 * 32767)) << base;
+    }
+    sharp &= whole_ring(around);
+    return (sharp << 1 | sharp >> (n - 1)) & whole_ring(around);
 }
 
 static void find_dots(ring *around)
@@ -175,7 +179,7 @@ static void find_lifts_of(ring *around, const double turned[3][RING_ROOM], uint3
     for (int i = n - 1; i >= 0; i--) {
         const pack side = side_of(around, turned, i, base);
         if (open >> i & 1) {
-            const int end = after_on(around, i);
+            const int end = ring_after(around, i);
             const uint32_t before = (1U << i) - 1, others = ~(1U << i | 1U << end);
             const unsigned here = lanes_of(before, base);
             unsigned hit = pack_up_to(side, nought) & pack_up_to(nought, next) & lanes_of(others, base);
@@ -193,18 +197,42 @@ static void find_lifts_of(ring *around, const double turned[3][RING_ROOM], uint3
     pack_store(&around->lift[base], pack_pick(found, pack_size(dot(u, normal)) / pack_root(square), nought));
 }
 
-static void find_lifts(ring *around)
+/* The sum of the true normals, to all: whole numbers, of which the order does not matter. */
+INLINE packs find_upward(const ring *around)
+{
+    const pack nought = pack_of(0);
+    packs sum = {nought, nought, nought};
+    for (int base = 0; base < around->count; base += PACK) {
+        const packs own = pick3(lanes_of(whole_ring(around), base), load3(around->true_normal, base),
+                                (packs){nought, nought, nought});
+        sum = (packs){sum.x + own.x, sum.y + own.y, sum.z + own.z};
+    }
+    return (packs){pack_of(pack_sum(sum.x)), pack_of(pack_sum(sum.y)), pack_of(pack_sum(sum.z))};
+}
+
+static uint32_t find_lifts(ring *around, double limit, double *least)
 {
     const int n = around->count;
-    _Alignas(64) double turned[3][RING_ROOM] = {{0}};
-    double up[3] = {0};
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < n; i++) up[k] += around->true_normal[k][i];
-    const packs upward = {pack_of(up[0]), pack_of(up[1]), pack_of(up[2])};
-    for (int base = 0; base < n; base += PACK) store3(turned, base, cross(upward, load3(around->at, base)));
+    const uint32_t all = whole_ring(around);
+    const packs upward = find_upward(around);
+    _Alignas(64) double turned[3][RING_ROOM];
+    int end = 0;
+    do {
+        store3(turned, end, cross(upward, load3(around->at, end)));
+        end += PACK;
+    } while (end <= n);
     close_ring(turned, n);
     const uint32_t open = find_open(around, turned);
-    for (int base = 0; base < n; base += PACK) find_lifts_of(around, turned, open, base);
+    uint32_t near = 0;
+    *least = INFINITY;
+    for (int base = 0; base < n; base += PACK) {
+        find_lifts_of(around, turned, open, base);
+        const pack error = pack_of(around->error) + pack_load(&around->lift[base]);
+        const unsigned within = pack_up_to(error, pack_of(limit)) & lanes_of(all, base);
+        near |= within << base;
+        *least = swarf_least(*least, pack_least(lanes_of(all, base) & ~within, error));
+    }
+    return near;
 }
 
 /* Squared distances of the middle to the segments between ring vertices i and j. */
@@ -253,10 +281,10 @@ static double between_edges(const ring *around, int j, double enough)
         sides[1] = (high - 1) & ~(2 * low - 1);
         sides[0] &= ~(other | sides[1]);
     }
-    const uint32_t beside = own | 1U << after_on(around, j) | 1U << before_on(around, j);
+    const uint32_t beside = own | 1U << ring_after(around, j) | 1U << ring_before(around, j);
     double most = 0;
-    for (int k = 0; k < n && most <= enough; k++) {
-        if (beside >> k & 1) continue;
+    for (uint32_t ends = whole_ring(around) & ~beside; ends && most <= enough; ends &= ends - 1) {
+        const int k = __builtin_ctz(ends);
         const uint32_t some = (sides[0] >> k & 1 ? sides[0] : sides[1] >> k & 1 ? sides[1] : 0) & ~(1U << k);
         for (int base = 0; base < n; base += PACK)
             if (lanes_of(some, base))
@@ -269,7 +297,7 @@ static double between_edges(const ring *around, int j, double enough)
  * distance of the middle to those it lies over. 0 when one turns or becomes a needle. */
 static int look_at_facets(ring *around, int j, double *shape, double *nearest)
 {
-    const uint32_t some = whole_ring(around) & ~(1U << j | 1U << before_on(around, j));
+    const uint32_t some = whole_ring(around) & ~(1U << j | 1U << ring_before(around, j));
     const packs u = all3(around->at, j);
     const pack nought = pack_of(0), needle = pack_of(least_shape * least_shape);
     *shape = 1;
@@ -339,4 +367,4 @@ static int try_draw(ring *around, int j, double limit, double least, double *err
     return *error <= limit && *score > least;
 }
 
-const ring_kernel KERNEL_NAME = {look_flat, find_dots, find_lifts, try_draw};
+const ring_kernel KERNEL_NAME = {find_creases, look_flat, find_dots, find_lifts, try_draw};

@@ -15,16 +15,29 @@ static void finish(ring *around)
     for (int i = n; i <= (n + 7) / 8 * 8; i++)
         for (int k = 0; k < 3; k++) {
             around->at[k][i] = i == n ? around->at[k][0] : 0;
-            around->true_normal[k][i] = 0;
+            around->true_normal[k][i] = i == n ? around->true_normal[k][0] : 0;
         }
     around->shape = -1;
 }
 
-static void measure(const ring_kernel *kernel, ring *around, double limit)
+/** Returns the vertices that are near enough; the error of the nearest of the others is what it is. */
+static uint32_t measure(const ring_kernel *kernel, ring *around, double limit)
 {
+    double least, expected = INFINITY;
+    uint32_t expected_near = 0;
     kernel->look_flat(around, limit);
     kernel->find_dots(around);
-    kernel->find_lifts(around);
+    const uint32_t near = kernel->find_lifts(around, limit, &least);
+    for (int j = 0; j < around->count; j++) {
+        const double error = around->error + around->lift[j];
+        if (error <= limit)
+            expected_near |= 1U << j;
+        else
+            expected = fmin(expected, error);
+    }
+    CHECK(near == expected_near);
+    CHECK(memcmp(&least, &expected, sizeof least) == 0);
+    return near;
 }
 
 /** A tip over a regular polygon of radius 1. */
@@ -98,13 +111,15 @@ static void check_blade(const ring_kernel *kernel)
     static const double at[6][3] = {{1, 0, 0},  {0.5, 0.3, -1},   {-0.5, 0.3, -1},
                                     {-1, 0, 0}, {-0.5, -0.3, -1}, {0.5, -0.3, -1}};
     static const double limit = 0.5;
-    ring blade = {.count = 6, .crease = 1U << 0 | 1U << 3, .error = 0.05};
+    ring blade = {.count = 6, .error = 0.05};
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < 3; k++) {
             blade.at[k][i] = at[i][k];
             blade.true_normal[k][i] = k == 1 ? (i < 3 ? 32767 : -32767) : 0;
         }
     finish(&blade);
+    blade.crease = kernel->find_creases(&blade);
+    CHECK(blade.crease == (1U << 0 | 1U << 3));
     measure(kernel, &blade, limit);
     for (int j = 0; j < 6; j += 3) {
         double error, score;
@@ -118,6 +133,25 @@ static void check_blade(const ring_kernel *kernel)
     double error, score;
     CHECK(kernel->try_draw(&blade, 0, limit, -1, &error, &score));
     CHECK_NEAR(error, blade.error + 0.1, 1e-7);
+}
+
+/** Edges between facets whose normals are more than 25 degrees apart, on rings that turn by so much all the time. */
+static void check_creases(const ring_kernel *kernel)
+{
+    for (int n = 3; n <= RING_MOST; n++)
+        for (int sharp = 0; sharp < 2; sharp++) {
+            const double turn = (sharp ? 25.2 : 24.8) * M_PI / 180;
+            ring around = {.count = n};
+            uint32_t expected = 0;
+            for (int i = 0; i < n; i++) {
+                around.true_normal[0][i] = round(32767 * cos(i * turn));
+                around.true_normal[1][i] = round(32767 * sin(i * turn));
+                const double last = (i ? 1 : n - 1) * turn;
+                expected |= (uint32_t)(cos(last) < cos(25 * M_PI / 180)) << i;
+            }
+            finish(&around);
+            CHECK(kernel->find_creases(&around) == expected);
+        }
 }
 
 /** Some are flat, some rough, some have places side by side; some lie on an edge of the surface. */
@@ -149,8 +183,8 @@ static int compare(const ring_kernel *kernel, const ring *any, double limit, dou
 {
     ring own = *any, reference = *any;
     int may = 0;
-    measure(kernel, &own, limit);
-    measure(&swarf_ring_kernel_scalar, &reference, limit);
+    CHECK(kernel->find_creases(any) == swarf_ring_kernel_scalar.find_creases(any));
+    CHECK(measure(kernel, &own, limit) == measure(&swarf_ring_kernel_scalar, &reference, limit));
     const size_t size = (size_t)any->count * sizeof(double);
     CHECK(memcmp(&own.slab, &reference.slab, sizeof own.slab) == 0);
     CHECK(memcmp(own.lift, reference.lift, size) == 0);
@@ -179,6 +213,7 @@ int main(void)
         const ring_kernel *const kernel = swarf_ring_kernel_current();
         check_tips(kernel);
         check_blade(kernel);
+        check_creases(kernel);
         int may = 0;
         for (int trial = 0; trial < 3000; trial++) {
             const ring any = make_any(&random);
