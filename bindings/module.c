@@ -52,6 +52,16 @@ static PyObject *module_set_threads(PyObject *module, PyObject *args, PyObject *
     Py_RETURN_NONE;
 }
 
+static PyObject *module_set_progress_interval(PyObject *module, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"milliseconds", NULL};
+    int milliseconds;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "i:set_progress_interval", names, &milliseconds)) return NULL;
+    const swarf_status status = swarf_progress_interval_set(milliseconds);
+    if (status) return error_raise(PyModule_GetState(module), status);
+    Py_RETURN_NONE;
+}
+
 static PyObject *module_isa(PyObject *Py_UNUSED(module), PyObject *Py_UNUSED(none))
 {
     return PyUnicode_FromString(swarf_isa_name(swarf_isa_current()));
@@ -69,6 +79,10 @@ static PyMethodDef module_methods[] = {
      "set_threads(count)\n--\n\n"
      "Set how many threads the library may use in this process, 1 .. 1024; 0: one per core.\n"
      "Results never depend on it."},
+    {"set_progress_interval", WITH_KEYWORDS(module_set_progress_interval), METH_VARARGS | METH_KEYWORDS,
+     "set_progress_interval(milliseconds)\n--\n\n"
+     "Set how many milliseconds at least pass between two reports of one loop in this process, 25 at first.\n"
+     "With 0 each piece of work done by the calling thread is reported: with one thread the same on any machine."},
     {"isa", module_isa, METH_NOARGS, "isa()\n--\n\nInstruction set in use: \"scalar\", \"avx2\" or \"avx512\"."},
     {"memory_peak", module_memory_peak, METH_NOARGS,
      "memory_peak()\n--\n\nPeak resident memory of this process in bytes, 0 where the system does not tell."},

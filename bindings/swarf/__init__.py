@@ -50,6 +50,7 @@ from ._native import (
     measure_deviation,
     memory_peak,
     picture_colour,
+    set_progress_interval,
     set_threads,
     threads,
     version,
@@ -66,5 +67,6 @@ __all__ = [
     "Deviation", "Error", "Finding", "FormatError", "GeometryError", "Held", "History", "Job", "Lump", "Mesh", "Pick",
     "Picture", "Program", "Result", "Scene", "Shell", "Simulation", "Solid", "Stock", "Surface", "Verification",
     "compare_overlap", "compare_place", "compare_volume", "deviation_colours", "isa", "measure_deviation",
-    "memory_peak", "picture_colour", "read_gcode", "set_threads", "simulate", "threads", "verify", "version",
+    "memory_peak", "picture_colour", "read_gcode", "set_progress_interval", "set_threads", "simulate", "threads",
+    "verify", "version",
 ]

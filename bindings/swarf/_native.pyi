@@ -43,6 +43,10 @@ def set_threads(count: int) -> None:
     """Set how many threads the library may use in this process, 1 .. 1024; 0: one per core.
     Results never depend on it."""
 
+def set_progress_interval(milliseconds: int) -> None:
+    """Set how many milliseconds at least pass between two reports of one loop in this process, 25 at first.
+    With 0 each piece of work done by the calling thread is reported: with one thread the same on any machine."""
+
 def isa() -> str:
     """Instruction set in use: "scalar", "avx2" or "avx512"."""
 

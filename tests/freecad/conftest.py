@@ -10,7 +10,7 @@ import pytest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ADDON = os.path.join(ROOT, "freecad_mod")
-sys.path.insert(0, os.path.join(ADDON, "freecad"))
+sys.path[:0] = [os.path.join(ADDON, "freecad"), os.path.join(ROOT, "tests", "support")]
 
 # These run inside FreeCAD, see CMakeLists.txt.
 collect_ignore = ["inside", "gui.py", "gui_panel.py", "gui_support.py"]
@@ -33,7 +33,19 @@ def swarf():
         import swarf as module
     except ImportError as error:
         pytest.skip("the native module is not on PYTHONPATH: %s" % error)
+    import telling
+
+    telling.nothing_by_time()
     return module
+
+
+@pytest.fixture
+def every_piece(swarf):
+    """Each piece of native work tells its progress."""
+    import telling
+
+    with telling.every_piece():
+        yield
 
 
 @pytest.fixture

@@ -3,15 +3,20 @@
 import math
 import os
 import pathlib
+import sys
 
 import hypothesis
 import pytest
 
 import swarf
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+import telling  # noqa: E402
+
 # The machine may be shared and a sanitizer slows everything: deadlines would test the machine.
 hypothesis.settings.register_profile("swarf", deadline=None, max_examples=60, database=None)
 hypothesis.settings.load_profile("swarf")
+telling.nothing_by_time()
 
 LO, HI, VOXEL = (0.0, 0.0, -10.0), (60.0, 40.0, 0.0), 0.5
 TOOL = "flat:d=6,l=20"
@@ -49,6 +54,13 @@ def make_zigzag(moves=4000):
     for i in range(moves):
         program.add_line((2 + 56 * (i % 2), 2 + 36 * i / moves, -9 * i / moves), feed_mm_min=600, line=i + 1)
     return program
+
+
+@pytest.fixture
+def every_piece():
+    """Each piece of native work tells its progress."""
+    with telling.every_piece():
+        yield
 
 
 @pytest.fixture

@@ -163,3 +163,8 @@ def test_threads_out_of_range():
     for count in (-1, 1025):
         with pytest.raises(ValueError, match="threads"):
             swarf.set_threads(count)
+
+
+def test_no_interval_of_progress():
+    with pytest.raises(ValueError, match="-1 ms is negative"):
+        swarf.set_progress_interval(-1)

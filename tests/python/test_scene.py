@@ -112,7 +112,7 @@ def test_a_scene_follows_its_stock():
     assert scene.pick(camera, 0, 0).point[2] == pytest.approx(-4, abs=1e-5)
 
 
-def test_refusals(stock):
+def test_refusals(stock, every_piece):
     scene = swarf.Scene(stock)
     camera = camera_of(stock)
     with pytest.raises(ValueError, match="same point"):

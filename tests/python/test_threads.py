@@ -44,6 +44,17 @@ def test_progress_runs_on_the_calling_thread_and_never_falls(stock, cutter):
     assert {ident for _, ident in seen} == {threading.get_ident()}
 
 
+def test_progress_is_told_by_pieces_or_by_time(cutter, every_piece):
+    def told(milliseconds):
+        swarf.set_progress_interval(milliseconds)
+        reports = []
+        swarf.Stock.box(LO, HI, VOXEL).simulate(make_zigzag(400), {1: cutter}, progress=reports.append)
+        return reports
+
+    pieces = told(0)
+    assert told(0) == pieces and len(told(3600000)) < len(pieces) / 10
+
+
 def test_interrupt_stops_a_long_call(stock, cutter):
     def progress(fraction):
         os.kill(os.getpid(), signal.SIGINT)
