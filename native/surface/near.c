@@ -94,7 +94,7 @@ static swarf_status look_at(struct gathering *g, uint32_t trace)
 {
     swarf_surface_near *near = g->near;
     swarf_touch touch;
-    swarf_trace_touch(&near->looked_at[trace], near->middle, &touch);
+    swarf_trace_bound(&near->looked_at[trace], near->middle, &touch);
     if (touch.raw > 2 * g->reach || touch.raw > g->ceiling + 2 * g->reach) return SWARF_OK;
     if (touch.exact) g->ceiling = fmin(g->ceiling, touch.raw);
     SWARF_TRY(swarf_array_reserve((void **)&near->seen, &near->room, near->count + 1, sizeof *near->seen));

@@ -196,9 +196,8 @@ static double piece_value(const swarf_exact_piece *p, double rho, double height,
 }
 
 /* Offer a touch; the nearest stays. */
-static void offer(swarf_touch *best, double value, double raw, const double gradient[3], double t, int32_t piece)
+static void offer(swarf_touch *best, double value, const double gradient[3], double t, int32_t piece)
 {
-    best->raw = swarf_least(best->raw, raw);
     if (value >= best->value) return;
     best->value = value;
     memcpy(best->gradient, gradient, sizeof best->gradient);
@@ -237,7 +236,8 @@ static void touch_level(const swarf_trace *trace, double rho, double gx, double 
         if (trace->kind == TRACE_LEVEL && body->component_count <= 2)
             put_bound(best, rho > no_direction ? value : value - rho, rho > no_direction ? gradient : over);
         const double at = trace->kind == TRACE_LEVEL && trace->run == 0 && body->exact[piece].upper ? trace->t1 : t;
-        offer(best, value, value, gradient, at, (int32_t)piece);
+        best->raw = swarf_least(best->raw, value);
+        offer(best, value, gradient, at, (int32_t)piece);
     }
 }
 
@@ -265,116 +265,201 @@ static void touch_arc(const swarf_trace *trace, const double p[3], swarf_touch *
 
 /* ---- tilted lines of cylinders and balls ------------------------------------------------------------------------- */
 
-/* A plane that touches the slanted surface of a disc on a tilted line: that whose normal is the similar ellipse's
- * through a point at `w` across the line, `away` from the plane of the disc's middles. Its value there and its unit
- * normal across the line and away from it. Beside the wall, where the plane above a point is steep, it is the nearer to
- * the truth (see sweep/kernel_line.h). -INFINITY: the point is not beyond the disc. */
-static double rim_plane(double w, double away, double R, double tilt, double normal[2])
+/* A cylinder from `bottom` to `top` above the tip, as a point sees it: along the line, across it, above its start. */
+struct tilted {
+    double R, bottom, top;
+    double s, w, z;
+    double along, beyond; /* along the line to the nearest moment in plan, and from there on */
+    double low, high;     /* beyond the flat ends */
+};
+
+static struct tilted see_tilted(const swarf_trace *trace, const double p[3], double R, double bottom, double top)
 {
-    const double half_axis = R * tilt;
-    if (away <= 0 || half_axis < 1e-9 * R) return -INFINITY;
-    const double u = w / R, v = away / half_axis, size = sqrt(u * u + v * v);
-    const double length = sqrt(u * u * tilt * tilt + v * v);
-    normal[0] = u * tilt / length;
-    normal[1] = v / length;
-    return size * (size - 1) * half_axis / length;
+    const double ex = p[0] - trace->point[0], ey = p[1] - trace->point[1], z = p[2] - trace->point[2];
+    struct tilted see = {.R = R, .bottom = bottom, .top = top, .z = z};
+    see.s = ex * trace->ux + ey * trace->uy;
+    see.w = ey * trace->ux - ex * trace->uy;
+    see.along = clamp(see.s, 0, trace->run);
+    see.beyond = see.s - see.along;
+    see.low = bottom - z;
+    see.high = z - (top + trace->rise);
+    return see;
 }
 
-/* A cylinder from `bottom` to `top` above the tip; its lower face has the piece number `piece`. With a `most` only its
- * value, and not even that where it is as far. */
-static void touch_cylinder(const swarf_trace *trace, const double p[3], double R, double bottom, double top,
-                           int32_t piece, const double *most, swarf_touch *best)
+/* A plane that touches the slanted surface of a disc on a tilted line: that whose normal is the similar ellipse's
+ * through a point at `w` across the line, `away` from the plane of the disc's middles. Its normal, of this length, is
+ * `across` the line and v away from it. Beside the wall, where the plane above a point is steep, it is the nearer to
+ * the truth (see sweep/kernel_line.h). */
+struct rim {
+    double value; /* -INFINITY: the point is not beyond the disc */
+    double across, v, length;
+};
+
+static struct rim rim_plane(double w, double away, double R, double tilt)
 {
-    const double m = trace->slope, im = trace->cosine;
-    const double ex = p[0] - trace->point[0], ey = p[1] - trace->point[1], z = p[2] - trace->point[2];
-    const double s = ex * trace->ux + ey * trace->uy, w = ey * trace->ux - ex * trace->uy;
-    const double along = clamp(s, 0, trace->run), beyond = s - along, rho = sqrt(beyond * beyond + w * w);
-    const double low = bottom - z, high = z - (top + trace->rise);
-    if (most && (rho - R >= *most || low >= *most || high >= *most)) return;
-    const double chord2 = swarf_most(0, R * R - w * w), chord = sqrt(chord2);
-    const double norm = sqrt(chord2 + m * m * R * R), scale = chord / norm;
-    const double under = scale * ((s - chord) * m + bottom - z), over = scale * (z - top - (s + chord) * m);
-    double value = rho - R, gs = rho > 0 ? beyond / rho : 1, gw = rho > 0 ? w / rho : 0, gz = 0, at = along;
-    int32_t touched = piece + 1;
-    if (low > value) {
-        value = low;
-        gs = gw = at = 0;
+    struct rim rim = {.value = -INFINITY};
+    const double half_axis = R * tilt;
+    if (away <= 0 || half_axis < 1e-9 * R) return rim;
+    const double u = w / R, v = away / half_axis, size = sqrt(u * u + v * v);
+    rim.across = u * tilt;
+    rim.v = v;
+    rim.length = sqrt(u * u * tilt * tilt + v * v);
+    rim.value = size * (size - 1) * half_axis / rim.length;
+    return rim;
+}
+
+/* What comes nearest of a cylinder: its wall, a flat end, the slanted surface below or above, or its rim there. */
+enum face { WALL, LOW, HIGH, UNDER, OVER, RIM_UNDER, RIM_OVER };
+
+struct nearest {
+    enum face face;
+    double value, rho, chord, norm;
+    struct rim rim;
+};
+
+/* The rest of what there is to tell of it: divisions, which only the face that is nearest is worth. */
+static void offer_face(const swarf_trace *trace, const struct tilted *see, const struct nearest *found,
+                       swarf_touch *best)
+{
+    const double m = trace->slope, im = trace->cosine, R = see->R, s = see->s, w = see->w;
+    const double sense = found->face == OVER || found->face == RIM_OVER ? -1 : 1;
+    double gs = 0, gw = 0, gz = 0, at = see->along;
+    int32_t piece = 1;
+    switch (found->face) {
+    case WALL:
+        gs = found->rho > 0 ? see->beyond / found->rho : 1;
+        gw = found->rho > 0 ? w / found->rho : 0;
+        break;
+    case LOW:
         gz = -1;
-        touched = piece;
-    }
-    if (high > value) {
-        value = high;
-        gs = gw = 0;
+        at = 0;
+        piece = 0;
+        break;
+    case HIGH:
         gz = 1;
         at = trace->run;
-        touched = piece + 2;
+        piece = 2;
+        break;
+    case UNDER:
+    case OVER:
+        gs = sense * m * found->chord / found->norm;
+        gw = m * clamp(w, -R, R) / found->norm;
+        gz = -sense * found->chord / found->norm;
+        at = clamp(s - sense * found->chord, 0, trace->run);
+        piece = found->face == UNDER ? 0 : 2;
+        break;
+    case RIM_UNDER:
+    case RIM_OVER: {
+        const double away = found->rim.v / found->rim.length;
+        gs = sense * m * im * away;
+        gw = found->rim.across / found->rim.length;
+        gz = -sense * im * away;
+        const double foot = w - found->value * gw;
+        at = clamp(s - found->value * gs - sense * sqrt(swarf_most(0, R * R - foot * foot)), 0, trace->run);
+        piece = found->face == RIM_UNDER ? 0 : 2;
+        break;
     }
-    if (under > value) {
-        value = under;
-        gs = m * chord / norm;
-        gw = m * clamp(w, -R, R) / norm;
-        gz = -chord / norm;
-        at = clamp(s - chord, 0, trace->run);
-        touched = piece;
-    }
-    if (over > value) {
-        value = over;
-        gs = -m * chord / norm;
-        gw = m * clamp(w, -R, R) / norm;
-        gz = chord / norm;
-        at = clamp(s + chord, 0, trace->run);
-        touched = piece + 2;
-    }
-    for (int up = 0; up < 2; up++) {
-        double n[2] = {0, 0};
-        const double away = (up ? z - top - s * m : s * m + bottom - z) * im, rim = rim_plane(w, away, R, m * im, n);
-        if (rim <= value) continue;
-        const double sense = up ? -1 : 1, foot = w - rim * n[0];
-        value = rim;
-        gs = sense * m * im * n[1];
-        gw = n[0];
-        gz = -sense * im * n[1];
-        at = clamp(s - rim * gs - sense * sqrt(swarf_most(0, R * R - foot * foot)), 0, trace->run);
-        touched = up ? piece + 2 : piece;
     }
     const double gradient[3] = {gs * trace->ux - gw * trace->uy, gs * trace->uy + gw * trace->ux, gz};
-    const double t = trace->t0 + (trace->t1 - trace->t0) * at / trace->run;
-    if (most) {
-        offer(best, value, value, gradient, t, touched);
-        return;
-    }
-    const double plane_under = ((s - R) * m + bottom - z) * im, plane_over = (z - top - (s + R) * m) * im;
+    offer(best, found->value, gradient, trace->t0 + (trace->t1 - trace->t0) * at / trace->run, piece);
+}
+
+static void take_face(struct nearest *found, enum face face, double value)
+{
+    if (value <= found->value) return;
+    found->value = value;
+    found->face = face;
+}
+
+/* Its lower face has the piece number 0. Nothing is offered that is not below `most`. */
+static void look_cylinder(const swarf_trace *trace, const struct tilted *see, double most, swarf_touch *best)
+{
+    const double m = trace->slope, im = trace->cosine, R = see->R, s = see->s, w = see->w, z = see->z;
+    struct nearest found = {.rho = sqrt(see->beyond * see->beyond + w * w)};
+    found.face = WALL;
+    found.value = found.rho - R;
+    take_face(&found, LOW, see->low);
+    take_face(&found, HIGH, see->high);
+    if (found.value >= most) return;
+    const double chord2 = swarf_most(0, R * R - w * w), chord = sqrt(chord2);
+    const double norm = sqrt(chord2 + m * m * R * R), scale = chord / norm;
+    found.chord = chord;
+    found.norm = norm;
+    take_face(&found, UNDER, scale * ((s - chord) * m + see->bottom - z));
+    take_face(&found, OVER, scale * (z - see->top - (s + chord) * m));
+    if (found.value >= most) return;
+    const double under = (s * m + see->bottom - z) * im, over = (z - see->top - s * m) * im;
+    found.rim = rim_plane(w, swarf_most(under, over), R, m * im); /* no point is beyond both */
+    take_face(&found, under > over ? RIM_UNDER : RIM_OVER, found.rim.value);
+    if (found.value < most) offer_face(trace, see, &found, best);
+}
+
+static void bound_cylinder(const swarf_trace *trace, const struct tilted *see, swarf_touch *best)
+{
+    const double m = trace->slope, im = trace->cosine, R = see->R, s = see->s, w = see->w, z = see->z;
+    const double rho = sqrt(see->beyond * see->beyond + w * w);
+    const double plane_under = ((s - R) * m + see->bottom - z) * im, plane_over = (z - see->top - (s + R) * m) * im;
     const int beside = rho > no_direction;
-    double raw = rho - R, bound = beside ? raw : -R, ts = beside ? beyond / rho : 0, tw = beside ? w / rho : 0, tz = 0;
-    const double flat = swarf_most(low, high), plane = swarf_most(plane_under, plane_over);
+    double raw = rho - R, bound = beside ? raw : -R;
+    double ts = beside ? see->beyond / rho : 0, tw = beside ? w / rho : 0, tz = 0;
+    const double flat = swarf_most(see->low, see->high), plane = swarf_most(plane_under, plane_over);
     if (flat > raw || plane > raw) {
         raw = bound = swarf_most(flat, plane);
-        const int up = flat >= plane ? high > low : plane_over > plane_under;
+        const int up = flat >= plane ? see->high > see->low : plane_over > plane_under;
         ts = flat >= plane ? 0 : up ? -m * im : m * im;
         tw = 0;
         tz = (up ? 1 : -1) * (flat >= plane ? 1 : im);
     }
-    offer(best, value, raw, gradient, t, touched);
-    best->exact = 0;
     const double tangent[3] = {ts * trace->ux - tw * trace->uy, ts * trace->uy + tw * trace->ux, tz};
+    best->raw = swarf_least(best->raw, raw);
+    best->exact = 0;
     put_bound(best, bound, tangent);
 }
 
-static void touch_ball(const swarf_trace *trace, const double p[3], const double *most, swarf_touch *best)
+/* The same cylinder up from the middle of a ball. */
+static struct tilted see_above_ball(const swarf_trace *trace, const double p[3])
 {
     const swarf_exact_piece *ball = trace->body->exact;
-    const double R = ball->radius, length = trace->length, *d = trace->along;
-    double e[3] = {p[0] - trace->point[0], p[1] - trace->point[1], p[2] - trace->point[2] - ball->centre_z};
-    const double q = clamp(e[0] * d[0] + e[1] * d[1] + e[2] * d[2], 0, length);
-    for (int k = 0; k < 3; k++) e[k] -= q * d[k];
-    const double away = sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    return see_tilted(trace, p, ball->radius, ball->centre_z, top_of(trace->body));
+}
+
+/* The way to a point from where the middle of a ball comes nearest, that far along the line, and its length. */
+static double see_ball(const swarf_trace *trace, const double p[3], double way[3], double *along)
+{
+    const double *d = trace->along;
+    for (int k = 0; k < 3; k++) way[k] = p[k] - trace->point[k];
+    way[2] -= trace->body->exact->centre_z;
+    *along = clamp(way[0] * d[0] + way[1] * d[1] + way[2] * d[2], 0, trace->length);
+    for (int k = 0; k < 3; k++) way[k] -= *along * d[k];
+    return sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+}
+
+static void look_ball(const swarf_trace *trace, const double p[3], double most, swarf_touch *best)
+{
+    const swarf_exact_piece *ball = trace->body->exact;
+    double way[3], along;
+    const double away = see_ball(trace, p, way, &along), value = away - ball->radius;
     /* what is above the ball is farther than it from a point so far below */
-    if (!most || !(ball->centre_z - (p[2] - trace->point[2]) > away - R))
-        touch_cylinder(trace, p, R, ball->centre_z, top_of(trace->body), 0, most, best);
-    if (most && away - R >= *most) return;
-    const double gradient[3] = {away > 0 ? e[0] / away : 0, away > 0 ? e[1] / away : 0, away > 0 ? e[2] / away : -1};
-    offer(best, away - R, away - R, gradient, trace->t0 + (trace->t1 - trace->t0) * q / length, 0);
-    put_bound(best, away > no_direction ? away - R : -R, away > no_direction ? gradient : (const double[3]){0, 0, 0});
+    if (!(ball->centre_z - (p[2] - trace->point[2]) > value)) {
+        const struct tilted see = see_above_ball(trace, p);
+        look_cylinder(trace, &see, most, best);
+    }
+    if (value >= most) return;
+    const double gradient[3] = {away > 0 ? way[0] / away : 0, away > 0 ? way[1] / away : 0,
+                                away > 0 ? way[2] / away : -1};
+    offer(best, value, gradient, trace->t0 + (trace->t1 - trace->t0) * along / trace->length, 0);
+}
+
+static void bound_ball(const swarf_trace *trace, const double p[3], swarf_touch *best)
+{
+    const double R = trace->body->exact->radius;
+    const struct tilted see = see_above_ball(trace, p);
+    double way[3], along, tangent[3] = {0};
+    bound_cylinder(trace, &see, best);
+    const double away = see_ball(trace, p, way, &along);
+    best->raw = swarf_least(best->raw, away - R);
+    for (int k = 0; k < 3 && away > no_direction; k++) tangent[k] = way[k] / away;
+    put_bound(best, away > no_direction ? away - R : -R, tangent);
 }
 
 /* ---- any cutter on tilted lines and curves ------------------------------------------------------------------------
@@ -438,8 +523,8 @@ static void offer_moment(const struct search *search, const struct moment *m, do
                          double t)
 {
     const swarf_trace *trace = search->trace;
-    offer(search->best, value, m->value < value ? m->value : value, gradient, trace->t0 + (trace->t1 - trace->t0) * t,
-          m->piece);
+    search->best->raw = swarf_least(search->best->raw, swarf_least(m->value, value));
+    offer(search->best, value, gradient, trace->t0 + (trace->t1 - trace->t0) * t, m->piece);
 }
 
 /* Least value between two moments, phi being convex between them. Its gradient is the mix of both ends' that stands
@@ -504,38 +589,48 @@ static void touch_any(const swarf_trace *trace, const double p[3], swarf_touch *
             search_curve(&search, &a, &b);
         else
             search_convex(&search, a, b);
-        offer(best, own.value, own.raw, own.gradient, own.t, own.piece);
+        best->raw = swarf_least(best->raw, own.raw);
+        offer(best, own.value, own.gradient, own.t, own.piece);
     }
 }
 
-static void touch_trace(const swarf_trace *trace, const double point[3], const double *most, swarf_touch *best)
+/* Both at once: what is near, and how near anything may be. */
+static void touch_trace(const swarf_trace *trace, const double point[3], swarf_touch *best)
 {
-    const swarf_body *body = trace->body;
-    best->value = best->raw = INFINITY;
-    best->exact = 1;
-    best->bounds = 0;
     switch (trace->kind) {
     case TRACE_LEVEL: touch_level_line(trace, point, best); break;
     case TRACE_ARC: touch_arc(trace, point, best); break;
-    case TRACE_CURVE: touch_any(trace, point, best); break;
     case TRACE_TILTED:
-        if (body->kind == SWARF_BODY_CYLINDER)
-            touch_cylinder(trace, point, body->exact_radius, body->exact_lo, top_of(body), 0, most, best);
-        else if (body->kind == SWARF_BODY_BALL)
-            touch_ball(trace, point, most, best);
-        else
-            touch_any(trace, point, best);
-        break;
+    case TRACE_CURVE: touch_any(trace, point, best); break;
     }
 }
 
-void swarf_trace_touch(const swarf_trace *trace, const double point[3], swarf_touch *out)
+void swarf_trace_bound(const swarf_trace *trace, const double point[3], swarf_touch *out)
 {
-    *out = (swarf_touch){0};
-    touch_trace(trace, point, NULL, out);
+    const swarf_body *body = trace->body;
+    *out = (swarf_touch){.value = INFINITY, .raw = INFINITY, .exact = 1};
+    if (trace->kind == TRACE_TILTED && body->kind == SWARF_BODY_CYLINDER) {
+        const struct tilted see = see_tilted(trace, point, body->exact_radius, body->exact_lo, top_of(body));
+        bound_cylinder(trace, &see, out);
+    } else if (trace->kind == TRACE_TILTED && body->kind == SWARF_BODY_BALL) {
+        bound_ball(trace, point, out);
+    } else {
+        touch_trace(trace, point, out);
+    }
 }
 
 void swarf_trace_look(const swarf_trace *trace, const double point[3], double most, swarf_touch *out)
 {
-    touch_trace(trace, point, &most, out);
+    const swarf_body *body = trace->body;
+    out->value = out->raw = INFINITY;
+    out->exact = 1;
+    out->bounds = 0;
+    if (trace->kind == TRACE_TILTED && body->kind == SWARF_BODY_CYLINDER) {
+        const struct tilted see = see_tilted(trace, point, body->exact_radius, body->exact_lo, top_of(body));
+        look_cylinder(trace, &see, most, out);
+    } else if (trace->kind == TRACE_TILTED && body->kind == SWARF_BODY_BALL) {
+        look_ball(trace, point, most, out);
+    } else {
+        touch_trace(trace, point, out);
+    }
 }

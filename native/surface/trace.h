@@ -52,9 +52,10 @@ void swarf_trace_make(const swarf_body *body, const swarf_path *path, int64_t mo
 /** Box of all that the flutes reach on it. */
 void swarf_trace_box(const swarf_trace *trace, swarf_box *out);
 
-void swarf_trace_touch(const swarf_trace *trace, const double point[3], swarf_touch *out);
-/** The same value, gradient, t and piece where that value is below `most`, else any value that is not; the rest of *out
- *  means nothing. Costs less. */
+/** Sets only raw, exact and the tangents: how near anything may be. The rest of *out means nothing. */
+void swarf_trace_bound(const swarf_trace *trace, const double point[3], swarf_touch *out);
+/** Sets only value, gradient, t and piece: what is near, where that value is below `most`, else any value that is not.
+ *  The rest of *out means nothing. */
 void swarf_trace_look(const swarf_trace *trace, const double point[3], double most, swarf_touch *out);
 
 #endif

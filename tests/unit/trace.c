@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Traces: a look at one with a limit tells what a full touch does, bit for bit, of all that is nearer than the limit,
+/* Traces: a look at one with a limit tells what one without does, bit for bit, of all that is nearer than the limit,
  * and of nothing else that it is nearer; and tangents never promise more than there is. All cutters and motions. Beside
  * ramps of flat ends the value is never far below the distance. */
 #include "surface/trace.h"
@@ -16,6 +16,19 @@ static const double voxel = 0.1;
 static void some_point(const oracle_body *body, const swarf_path *path, test_random *random, double out[3])
 {
     oracle_random_point(body, path, (test_random_below(random, 4) ? 3 : 60) * voxel, random, out);
+}
+
+/* What is near without a limit, and how near anything may be. */
+static swarf_touch touch_at(const swarf_trace *trace, const double point[3])
+{
+    swarf_touch touch, bound;
+    swarf_trace_look(trace, point, INFINITY, &touch);
+    swarf_trace_bound(trace, point, &bound);
+    touch.raw = bound.raw;
+    touch.exact = bound.exact;
+    touch.bounds = bound.bounds;
+    memcpy(touch.bound, bound.bound, sizeof touch.bound);
+    return touch;
 }
 
 /* What looks with limits about the value, and far from it, tell. */
@@ -48,9 +61,8 @@ static void check_look(const swarf_trace *trace, const double point[3], const sw
 static void check_bounds(const swarf_trace *trace, const double point[3], const swarf_touch *touch,
                          const double other[3])
 {
-    swarf_touch there;
+    const swarf_touch there = touch_at(trace, other);
     double least = INFINITY, square = 0;
-    swarf_trace_touch(trace, other, &there);
     for (int i = 0; i < touch->bounds; i++) {
         double bound = touch->bound[i].value;
         for (int k = 0; k < 3; k++) bound += touch->bound[i].slope[k] * (other[k] - point[k]);
@@ -85,8 +97,7 @@ static void check_ramps(test_random *random)
             const double point[3] = {s, i & 1 ? w : -w, s * slope - depth};
             const double distance = oracle_distance(&shape, &path, point);
             if (distance < 1e-3 * voxel) continue;
-            swarf_touch touch;
-            swarf_trace_touch(&trace, point, &touch);
+            const swarf_touch touch = touch_at(&trace, point);
             CHECK(touch.value < distance + 1e-6);
             least = fmin(least, touch.value / distance);
             outside++;
@@ -117,10 +128,9 @@ int main(void)
             swarf_trace_make(body, &path, 7, part, parts, &trace);
             for (int i = 0; i < points; i++) {
                 double point[3], other[3];
-                swarf_touch touch;
                 some_point(&shape, &path, &random, point);
                 some_point(&shape, &path, &random, other);
-                swarf_trace_touch(&trace, point, &touch);
+                const swarf_touch touch = touch_at(&trace, point);
                 if (!CHECK(isfinite(touch.value))) printf("    %s, %s\n", cutter_name, motion_name);
                 bounded += touch.bounds > 0;
                 check_look(&trace, point, &touch, &random, counts);
