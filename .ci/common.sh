@@ -59,11 +59,13 @@ need() {
     step packages install_packages
 }
 
-# In need()'s scope: the lists are refreshed only when they do not know what is wanted.
+# In need()'s scope: the lists are refreshed only when they do not know what is wanted. A server that does not answer is
+# asked again; what else installs packages at that moment is waited for, ten minutes at most.
 install_packages() {
-    local apt=("${root[@]}" apt-get -q -y --no-install-recommends -o Dpkg::Use-Pty=0)
+    local apt=("${root[@]}" apt-get -q -y --no-install-recommends -o Dpkg::Use-Pty=0 -o Acquire::Retries=5
+        -o DPkg::Lock::Timeout=600)
     "${apt[@]}" install "${missing[@]}" && return
-    "${root[@]}" apt-get -q update && "${apt[@]}" install "${missing[@]}"
+    "${apt[@]}" update && "${apt[@]}" install "${missing[@]}"
 }
 
 # configure PRESET [-DOPTION=VALUE...]

@@ -142,7 +142,7 @@ def check():
     close_panel()
 
     opened = panel.show_panel(job)
-    opened.voxel.setValue(0.002)
+    opened.voxel.setValue(0.0001)  # hundreds of terabytes
     opened.accept()
     wait_for(lambda: not opened.working, "refusal of a voxel that needs too much memory")
     screenshot("refused.png")

@@ -524,9 +524,12 @@ class Watching(PanelTest):
             panel.banner.action.click()
             wait_for(lambda: not panel.banner.working, "breaking off the animation")
             assert "ancelled" in panel.banner.text.text()
-            # before it is begun: the engine does something else
+            # before it is begun: the engine does something else; and on the way to another place, which it goes on
             with self.kept_busy():
+                panel.player.seek(0)
                 panel.files.save_animation(folder, 20000, (320, 240))
+                assert panel.transport.at != panel.transport.wanted == 0.0
+                panel.player.seek(panel.transport.end)
                 panel.banner.action.click()
             wait_for(lambda: not panel.banner.working, "breaking off an animation that was not begun")
             assert "ancelled" in panel.banner.text.text()

@@ -124,11 +124,11 @@ def test_a_second_thread_is_told(stock):
 
     def wait(_):
         inside.set()
-        go_on.wait(20)
+        go_on.wait(240)
 
     thread = threading.Thread(target=history.seek, args=(4000,), kwargs={"progress": wait})
     thread.start()
-    assert inside.wait(20)
+    assert inside.wait(240)
     for call in (lambda: history.seek(0), history.held, history.stock.volume):
         with pytest.raises(swarf.BusyError):
             call()

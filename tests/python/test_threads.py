@@ -92,7 +92,7 @@ def test_other_threads_run_meanwhile(cutter):
         thread = threading.Thread(target=stock.simulate, args=(program, {1: cutter}),
                                   kwargs={"batch": 1, "progress": told.put})
         thread.start()
-        told.get(timeout=60)
+        told.get(timeout=240)
         try:
             stock.volume()
             return False
@@ -155,7 +155,15 @@ def round_of_everything(path):
     return views
 
 
-def test_memory_does_not_grow(tmp_path):
+@pytest.fixture
+def two_threads():
+    """Each of many keeps memory of its own."""
+    swarf.set_threads(2)
+    yield
+    swarf.set_threads(0)
+
+
+def test_memory_does_not_grow(tmp_path, two_threads):
     path = tmp_path / "mesh.stl"
     for _ in range(20):
         round_of_everything(path)

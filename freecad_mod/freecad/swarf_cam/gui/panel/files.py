@@ -57,7 +57,8 @@ class Files:
         panel = self._panel
         if panel.session is None or panel.banner.working:
             return
-        panel.player.seek(panel.transport.at)
+        panel.player.pause()
+        panel.player.select(None)
         view, report = panel.current_view(size), export.Report(panel)
         report.came.connect(panel.banner.progress, QtCore.Qt.QueuedConnection)
         call = panel.opening.call(
