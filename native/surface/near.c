@@ -4,7 +4,8 @@
  * Each trace is looked at from the middle of the box; `raw` there, less the way to a point, bounds what that point
  * sees. What cannot have a zero in the box, or lies behind another trace everywhere, is left out. The
  * rest is ordered by raw, so that a point stops looking as soon as nothing nearer can come; where raw is the least of a
- * few convex functions, their tangents in the middle tell of most traces that they are not the nearest.
+ * few convex functions, their tangents in the middle tell of most traces that they are not the nearest. A block that is
+ * the first shape comes nearer by no more than the way either: most points need not look at it.
  *
  * Where traces leave the very same surface the first of the program has made it, whatever box was gathered.
  *
@@ -12,6 +13,7 @@
  *   seen: what a point goes through, a cache line and a half each */
 #include "surface/surface.h"
 
+#include "base/least.h"
 #include "base/memory.h"
 #include "base/status.h"
 
@@ -40,6 +42,7 @@ struct swarf_surface_near {
     struct seen *seen;
     size_t count, room;
     double middle[3];
+    double block;               /* value there of the block that is the first shape; INFINITY where it is none */
     swarf_surface_near *before; /* of the set-up before, NULL where there is none */
 };
 
@@ -210,7 +213,7 @@ static void sort_seen(const struct gathering *g)
     }
 }
 
-/* The middle of the box and from there to its corners. */
+/* The middle of the box, from there to its corners, and the block as seen from there. */
 static swarf_status begin_box(struct gathering *g)
 {
     const swarf_box *where = g->where;
@@ -222,6 +225,12 @@ static swarf_status begin_box(struct gathering *g)
         square += 0.25 * (where->hi[k] - where->lo[k]) * (where->hi[k] - where->lo[k]);
     }
     g->reach = sqrt(square);
+    g->near->block = INFINITY;
+    if (g->near->surface->block) {
+        swarf_surface_point first;
+        swarf_surface_first(g->near->surface, g->near->middle, &first);
+        g->near->block = first.value;
+    }
     return SWARF_OK;
 }
 
@@ -333,50 +342,86 @@ swarf_status swarf_surface_narrow(swarf_surface_near *near, const swarf_surface_
     return status;
 }
 
-/* Whether the trace is further than `beaten` for what is known of it. */
-static int is_beyond(const struct seen *seen, const double way[3], double beaten)
+/* A tangent at a point that lies so from the middle. */
+static inline double bound_at(const swarf_touch_bound *bound, const double way[3])
 {
-    for (int i = 0; i < seen->bounds; i++) {
-        const double *slope = seen->bound[i].slope;
-        if (seen->bound[i].value + slope[0] * way[0] + slope[1] * way[1] + slope[2] * way[2] <= beaten) return 0;
+    return bound->value + bound->slope[0] * way[0] + bound->slope[1] * way[1] + bound->slope[2] * way[2];
+}
+
+/* Whether the trace is further than `beaten` for what is known of it. */
+static inline int is_beyond(const struct seen *seen, const double way[3], double beaten)
+{
+    if (seen->bounds == 0 || bound_at(&seen->bound[0], way) <= beaten) return 0;
+    return seen->bounds == 1 || bound_at(&seen->bound[1], way) > beaten;
+}
+
+/* The nearest of what a point sees. */
+struct nearest {
+    double least;         /* INFINITY: nothing */
+    uint32_t maker;       /* trace that it is of, for which nothing may be as near that comes later */
+    int kept;             /* touch that it is */
+    swarf_touch touch[2]; /* and room for the next */
+};
+
+/* What is nearer to a point, `away` from the middle, than `limit`. */
+static void find_nearest(const swarf_surface_near *near, const double point[3], const double way[3], double away,
+                         double limit, struct nearest *found)
+{
+    found->least = INFINITY;
+    found->maker = 0;
+    found->kept = 0;
+    double beaten = limit, bound = beaten + as_near;
+    const struct seen *end = near->seen + near->count;
+    for (const struct seen *seen = near->seen; seen < end && seen->raw <= bound + away; seen++) {
+        if (is_beyond(seen, way, bound)) continue;
+        const int comes_first = seen->trace < found->maker;
+        const double most = comes_first ? swarf_least(bound, limit) : beaten;
+        swarf_touch *touch = &found->touch[!found->kept];
+        swarf_trace_look(&near->looked_at[seen->trace], point, most, touch);
+        if (touch->value >= most) continue;
+        const int is_nearer = touch->value < found->least - as_near;
+        beaten = found->least = swarf_least(touch->value, found->least);
+        bound = beaten + as_near;
+        if (!is_nearer && !comes_first) continue;
+        found->maker = seen->trace;
+        found->kept = !found->kept;
     }
-    return seen->bounds > 0;
+}
+
+static void tell(const swarf_surface_near *near, const struct nearest *found, swarf_surface_point *out)
+{
+    const swarf_touch *touch = &found->touch[found->kept];
+    *out = (swarf_surface_point){.value = -found->least,
+                                 .normal = {-touch->gradient[0], -touch->gradient[1], -touch->gradient[2]},
+                                 .t = touch->t,
+                                 .move = near->looked_at[found->maker].move,
+                                 .piece = touch->piece};
 }
 
 void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3], swarf_surface_point *out)
 {
-    swarf_surface_point found;
-    first_shape(near, point, &found);
-    double way[3], square = 0, least = INFINITY;
-    uint32_t maker = 0; /* trace that `least` is of, for which nothing may be as near that comes later */
+    double way[3], square = 0;
     for (int k = 0; k < 3; k++) {
         way[k] = point[k] - near->middle[k];
         square += way[k] * way[k];
     }
-    const double away = sqrt(square), first = found.value;
-    for (size_t i = 0; i < near->count; i++) {
-        const struct seen *seen = &near->seen[i];
-        const double beaten = least < -first ? least : -first, bound = beaten + as_near;
-        if (seen->raw - away > bound) break;
-        if (is_beyond(seen, way, bound)) continue;
-        const swarf_trace *trace = &near->looked_at[seen->trace];
-        const int comes_first = seen->trace < maker;
-        const double most = !comes_first ? beaten : bound < -first ? bound : -first;
-        swarf_touch touch;
-        swarf_trace_look(trace, point, most, &touch);
-        if (touch.value >= most) continue;
-        const int is_nearer = touch.value < least - as_near;
-        least = touch.value < least ? touch.value : least; /* fmin() is a call */
-        if (!is_nearer && !comes_first) continue;
-        maker = seen->trace;
-        found = (swarf_surface_point){.value = -least,
-                                      .normal = {-touch.gradient[0], -touch.gradient[1], -touch.gradient[2]},
-                                      .t = touch.t,
-                                      .move = trace->move,
-                                      .piece = touch.piece};
+    const double away = sqrt(square), block = -near->block - away; /* the first shape is not nearer */
+    struct nearest found;
+    /* guessed to be in vain where traces may be as far */
+    if (near->count > 0 && near->seen[0].raw + away < block) {
+        find_nearest(near, point, way, away, INFINITY, &found);
+        if (found.least + 2 * as_near < block) {
+            tell(near, &found, out);
+            return;
+        }
     }
-    if (least < INFINITY) found.value = -least;
-    *out = found;
+    swarf_surface_point first;
+    first_shape(near, point, &first);
+    find_nearest(near, point, way, away, -first.value, &found);
+    if (found.least < INFINITY)
+        tell(near, &found, out);
+    else
+        *out = first;
 }
 
 int swarf_surface_crossing(const swarf_surface_near *near, const double a[3], const double b[3], double tolerance_mm,
