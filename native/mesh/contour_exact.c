@@ -20,17 +20,24 @@ static const double one_face_cosine = 0.8;
 /* Eigenvalues below this part of the greatest: planes that differ by less than half of same_face. The first guess takes
  * planes apart from where they meet, so it is careful. */
 static const double least_eigenvalue = 1.5e-4, first_eigenvalue = 1e-3;
-/* How near to the vertex found its planes are taken, round by round, in parts of the way to the crossings. The error
- * of a round is the bend over that way, so each is well within the next one's reach. */
-static const double approach[] = {0.5, 0.2, 0.05, 0.01};
+/* How near to the vertex found its planes are taken, round by round, in parts of the way to the crossings. From afar
+ * they are led on to the vertex as their faces bend, so that it comes within the next one's reach, which tells whether
+ * the faces are there. */
+static const struct round {
+    double part;
+    int bent;
+} approach[] = {{0.5, 1}, {0.02, 0}, {0.2, 1}, {0.05, 0}, {0.01, 0}};
+enum { FIRST_TO_TELL = 1, ROUNDS = sizeof approach / sizeof *approach };
+/* The first round to tell ends them if it moves the vertex by less: what bends by that over half of the way bends by
+ * 2e-5 over its own. */
+static const double settled = 0.01;
 /* A face near the vertex is the one at the crossings if it has turned by less than 25 degrees on the way. */
 static const double met_again_cosine = 0.906;
 /* In voxels: on the surface; where Newton's steps end. A tenth and a hundredth of what the mesh promises. */
 static const double on_surface = 1e-3, close_enough = 1e-4;
-/* From this far one step leads onto a face as well as many: it misses by the square of it over the face's radius. */
-static const double one_step = 0.02;
-/* After a round that moves the vertex by less only the last one follows: it alone tells whether the faces are there. */
-static const double settled = 1e-5;
+/* From this far one step leads onto a face as well as many: it misses by the square of it over the face's radius. From
+ * further than this no face seen at the vertex is one that meets there. */
+static const double one_step = 0.02, farthest = 0.1;
 /* Vertices are moved into the cell by this much at most, so that they stay on their edge. */
 static const double allowed_outside = 0.01;
 
@@ -108,48 +115,80 @@ static int is_face(const face *const chosen[MOST_FACES], int count, int own, con
     return likeness > met_again_cosine;
 }
 
+static double apart(const double a[3], const double b[3])
+{
+    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
+/* Lead the plane at q, a part of the way from x to where the normal was `before`, on to x, as it bends up to q. */
+static void lead_on(const double q[3], const double normal[3], const double before[3], double part, const double x[3],
+                    contour_plane *plane)
+{
+    const double on = part / (1 - part);
+    double chord[3]; /* its normal, half way between that at q and that at x */
+    for (int k = 0; k < 3; k++) {
+        plane->normal[k] = normal[k] + on * (normal[k] - before[k]);
+        chord[k] = normal[k] + plane->normal[k];
+    }
+    const double length = sqrt(dot(plane->normal, plane->normal));
+    const double above = (dot(chord, x) - dot(chord, q)) / dot(chord, chord);
+    for (int k = 0; k < 3; k++) {
+        plane->point[k] = x[k] - above * chord[k];
+        plane->normal[k] /= length;
+    }
+}
+
 /* Take the plane of face number `own` of `chosen` again where it is near x; 0, and it stays as it is, where the face is
  * not seen there. */
 static int take_one(const cell *c, const face *const chosen[MOST_FACES], int count, int own, const double x[3],
-                    double part, contour_plane *plane)
+                    const struct round *round, contour_plane *plane)
 {
     double q[3];
     swarf_surface_point found;
-    for (int k = 0; k < 3; k++) q[k] = x[k] + part * (chosen[own]->plane.point[k] - x[k]);
+    for (int k = 0; k < 3; k++) q[k] = x[k] + round->part * (chosen[own]->plane.point[k] - x[k]);
     for (int step = 0; step < 3; step++) {
         const double value = look(c, q, &found);
         if (!is_face(chosen, count, own, &found)) return 0;
         for (int k = 0; k < 3; k++) q[k] -= value * found.normal[k];
         if (fabs(value) < one_step) break;
     }
+    if (round->bent) {
+        lead_on(q, found.normal, chosen[own]->plane.normal, round->part, x, plane);
+        return 1;
+    }
     memcpy(plane->point, q, sizeof q);
     memcpy(plane->normal, found.normal, sizeof found.normal);
     return 1;
 }
 
-/* Take each plane that is seen again near x; returns whether all were. */
-static int take_again(const cell *c, const face *const chosen[MOST_FACES], int count, const double x[3], double part,
-                      contour_plane *planes)
+/* Take each plane that is seen again, one of them at x, the others near it; returns whether all were. Sets the value
+ * at x. */
+static int take_again(const cell *c, const face *const chosen[MOST_FACES], int count, const double x[3],
+                      const struct round *round, contour_plane *planes, double *value)
 {
-    int all = 1;
-    for (int i = 0; i < count; i++) all &= take_one(c, chosen, count, i, x, part, &planes[i]);
+    swarf_surface_point found;
+    *value = look(c, x, &found);
+    int all = 1, here = 0;
+    while (here < count && !(fabs(*value) < farthest && is_face(chosen, count, here, &found))) here++;
+    for (int i = 0; i < count; i++)
+        if (i != here) all &= take_one(c, chosen, count, i, x, round, &planes[i]);
+    for (int k = 0; here < count && k < 3; k++) {
+        planes[here].point[k] = x[k] - *value * found.normal[k];
+        planes[here].normal[k] = found.normal[k];
+    }
     return all;
 }
 
-static double apart(const double a[3], const double b[3])
-{
-    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
-}
-
-/* Move the point where faces meet into the cell: 1 when it is one of the surface, 0 when it lies elsewhere. */
-static int keep_if_there(const cell *c, double x[3])
+/* Move the point where faces meet into the cell: 1 when it is one of the surface, 0 when it lies elsewhere. `value` is
+ * that at `seen`; along the way from there it changes by no more than the way. */
+static int keep_if_there(const cell *c, const double seen[3], double value, double x[3])
 {
     const contour_bounds *bounds = &c->polygon->bounds;
     for (int k = 0; k < 3; k++)
         if (x[k] < bounds->lo[k] - allowed_outside || x[k] > bounds->hi[k] + allowed_outside) return 0;
     swarf_surface_point found;
     swarf_contour_clamp(bounds, x);
-    return fabs(look(c, x, &found)) <= on_surface;
+    return fabs(value) + sqrt(apart(x, seen)) <= on_surface || fabs(look(c, x, &found)) <= on_surface;
 }
 
 /* Where the chosen faces meet in the cell: the rank, or 1 when they do not. Planes from afar may lead out of the cell
@@ -157,18 +196,18 @@ static int keep_if_there(const cell *c, double x[3])
 static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int count, double x[3])
 {
     contour_plane planes[MOST_FACES];
+    double about[3], value = 0;
     const contour_bounds *bounds = &c->polygon->bounds;
     for (int i = 0; i < count; i++) planes[i] = chosen[i]->plane;
     int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, bounds, x), seen = 0;
-    const size_t rounds = sizeof approach / sizeof *approach;
-    for (size_t round = 0; round < rounds && rank > 1; round++) {
+    for (int round = 0; round < ROUNDS && rank > 1; round++) {
         swarf_contour_clamp(bounds, x);
-        const double about[3] = {x[0], x[1], x[2]};
-        seen = take_again(c, chosen, count, x, approach[round], planes);
+        memcpy(about, x, sizeof about);
+        seen = take_again(c, chosen, count, x, &approach[round], planes, &value);
         rank = swarf_contour_meet(planes, count, about, least_eigenvalue, bounds, x);
-        if (seen && apart(x, about) < settled * settled && round + 2 < rounds) round = rounds - 2;
+        if (round == FIRST_TO_TELL && seen && apart(x, about) < settled * settled) break;
     }
-    return rank > 1 && seen && keep_if_there(c, x) ? rank : 1;
+    return rank > 1 && seen && keep_if_there(c, about, value, x) ? rank : 1;
 }
 
 static void step_onto(const cell *c, double x[3], double value, const swarf_surface_point *found)
@@ -202,35 +241,69 @@ static void take_crossing(const cell *c, double x[3])
     swarf_contour_clamp(&c->polygon->bounds, x);
 }
 
-/* Where two of the faces meet nearest to the middle of the crossings. */
-static int meet_two(const cell *c, double x[3])
+/* On the surface as near to `from` as Newton's steps lead; 0 when they do not, then on a crossing. */
+static int place_smooth(const cell *c, const double from[3], double x[3], swarf_surface_point *found)
 {
-    double nearest = INFINITY;
-    for (int i = 0; i < c->count; i++)
-        for (int j = 0; j < i; j++) {
-            const face *two[MOST_FACES] = {&c->faces[j], &c->faces[i]};
-            double at[3];
-            if (dot(two[0]->plane.normal, two[1]->plane.normal) > same_face_cosine || meet_faces(c, two, 2, at) < 2)
-                continue;
-            const double away = apart(at, c->middle);
-            if (away >= nearest) continue;
-            nearest = away;
-            memcpy(x, at, sizeof at);
-        }
-    return nearest < INFINITY ? 2 : 1;
+    memcpy(x, from, sizeof c->middle);
+    if (project(c, x, found)) return 1;
+    take_crossing(c, x);
+    return 0;
 }
 
-/* Where faces meet; one that no crossing lies on, as the crest of a thread, is seen from where the others led to. */
+/* How far from the middle of the crossings the planes of two faces meet; INFINITY where they are all but one. */
+static double pair_away(const cell *c, const face *a, const face *b)
+{
+    const contour_plane planes[] = {a->plane, b->plane};
+    double at[3];
+    if (dot(a->plane.normal, b->plane.normal) > same_face_cosine ||
+        swarf_contour_meet(planes, 2, c->middle, first_eigenvalue, &c->polygon->bounds, at) < 2)
+        return INFINITY;
+    return apart(at, c->middle);
+}
+
+/* The pair of faces whose planes meet nearest, of those left, and how far. */
+static double next_pair(double away[MOST_FACES][MOST_FACES], int count, int pair[2])
+{
+    double least = INFINITY;
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < i; j++) {
+            if (away[i][j] >= least) continue;
+            least = away[i][j];
+            pair[0] = i;
+            pair[1] = j;
+        }
+    return least;
+}
+
+/* Where two of the faces meet, the first of those whose planes meet nearest to the middle of the crossings; x stays as
+ * it is where none do. */
+static int meet_two(const cell *c, double x[3])
+{
+    double away[MOST_FACES][MOST_FACES], at[3];
+    for (int i = 0; i < c->count; i++)
+        for (int j = 0; j < i; j++) away[i][j] = pair_away(c, &c->faces[j], &c->faces[i]);
+    int pair[2] = {0, 0};
+    while (next_pair(away, c->count, pair) < INFINITY) {
+        const face *two[MOST_FACES] = {&c->faces[pair[1]], &c->faces[pair[0]]};
+        if (meet_faces(c, two, 2, at) > 1) {
+            memcpy(x, at, sizeof at);
+            return 2;
+        }
+        away[pair[0]][pair[1]] = INFINITY;
+    }
+    return 1;
+}
+
+/* Where faces meet, or on one of them; one that no crossing lies on, as the crest of a thread, is seen from where the
+ * others led to. */
 static int meet(cell *c, double x[3])
 {
     const face *chosen[MOST_FACES];
     for (int i = 0; i < c->count; i++) chosen[i] = &c->faces[i];
     int rank = meet_faces(c, chosen, c->count, x);
     if (rank == 1 && c->count > 2) rank = meet_two(c, x);
-    if (rank > 1 || c->count == MOST_FACES) return rank;
-    memcpy(x, c->middle, sizeof c->middle);
     swarf_surface_point found;
-    if (!project(c, x, &found)) return 1;
+    if (rank > 1 || !place_smooth(c, c->middle, x, &found) || c->count == MOST_FACES) return rank;
     for (int i = 0; i < c->count; i++)
         if (found.move == c->faces[i].move && found.piece == c->faces[i].piece) return 1;
     face *hidden = &c->faces[c->count++];
@@ -240,19 +313,12 @@ static int meet(cell *c, double x[3])
     return meet_two(c, x);
 }
 
-/* On the surface as near to `from` as Newton's steps lead. */
-static void place_smooth(const cell *c, const double from[3], double out[3])
-{
-    swarf_surface_point found;
-    memcpy(out, from, sizeof c->middle);
-    if (!project(c, out, &found)) take_crossing(c, out);
-}
-
 void swarf_contour_vertex_smooth(const contour_polygon *polygon, const swarf_surface_near *near, double out[3])
 {
     cell c = {.polygon = polygon, .near = near};
+    swarf_surface_point found;
     swarf_contour_middle(polygon, c.middle);
-    place_smooth(&c, c.middle, out);
+    place_smooth(&c, c.middle, out, &found);
 }
 
 int swarf_contour_vertex_exact(const contour_polygon *polygon, const swarf_surface_near *near, double out[3])
@@ -270,13 +336,12 @@ int swarf_contour_vertex_exact(const contour_polygon *polygon, const swarf_surfa
     }
     if (least_dot < (one_piece ? one_face_cosine : same_face_cosine)) {
         find_faces(&c);
-        const int rank = meet(&c, out);
-        if (rank == 1) place_smooth(&c, c.middle, out);
-        return rank;
+        return meet(&c, out);
     }
+    swarf_surface_point found;
     double above[3] = {c.middle[0], c.middle[1], c.middle[2]};
     swarf_contour_rise(polygon, above);
     swarf_contour_clamp(&polygon->bounds, above);
-    place_smooth(&c, above, out);
+    place_smooth(&c, above, out, &found);
     return 1;
 }
