@@ -27,7 +27,7 @@ typedef struct simplify_region {
     uint32_t *head;   /* first corner of each vertex's list */
     uint8_t *state;   /* SIMPLIFY_FIXED, SIMPLIFY_DIRTY, SIMPLIFY_BENT */
     uint32_t *mark;   /* of vertices on the ring being looked at: its stamp + the place in it */
-    float *need; /* error below which a vertex that was looked at cannot go; INFINITY: whatever it is; 0 at first */
+    float *need; /* error below which a vertex cannot go, as far as is known, 0 at first; INFINITY: whatever it is */
     size_t vertex_count;
     simplify_facet *facet;
     size_t facet_count;

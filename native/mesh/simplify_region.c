@@ -307,11 +307,12 @@ static void find_bent(simplify_region *r)
 /* Fixed vertices need more than there is; so do those that are bent, while only flat ones are looked at. */
 static void set_needs(simplify_region *r, int flat_only)
 {
-    const uint8_t out = SIMPLIFY_FIXED | (flat_only ? SIMPLIFY_BENT : 0);
     for (size_t v = 0; v < r->vertex_count; v++) {
-        if (!flat_only && r->state[v] & SIMPLIFY_BENT) r->need[v] = 0;
-        r->state[v] &= (uint8_t) ~(flat_only ? 0 : SIMPLIFY_BENT);
-        if (r->state[v] & out) r->need[v] = INFINITY;
+        if (!flat_only && r->state[v] & SIMPLIFY_BENT) {
+            r->need[v] = 0;
+            r->state[v] &= (uint8_t)~SIMPLIFY_BENT;
+        }
+        if (r->state[v] & (SIMPLIFY_FIXED | SIMPLIFY_BENT)) r->need[v] = INFINITY;
     }
 }
 
