@@ -25,6 +25,8 @@ static const double settled = 1e-10, apart = 1e-6;
 /* mm: nearer to a line than this the direction from it is noise, or there is none: a tangent of the distance there is
  * level. */
 static const double no_direction = 1e-6;
+/* mm: far above what rounding makes of a distance. */
+static const double rounded = 1e-9;
 
 static double clamp(double value, double lo, double hi)
 {
@@ -389,8 +391,12 @@ static void look_cylinder(const swarf_trace *trace, const struct tilted *see, do
     take_face(&found, OVER, scale * (z - see->top - (s + chord) * m));
     if (found.value >= most) return;
     const double under = (s * m + see->bottom - z) * im, over = (z - see->top - s * m) * im;
-    found.rim = rim_plane(w, swarf_most(under, over), R, m * im); /* no point is beyond both */
-    take_face(&found, under > over ? RIM_UNDER : RIM_OVER, found.rim.value);
+    const double away = swarf_most(under, over); /* no point is beyond both */
+    /* above the disc no plane that touches it is farther off than the disc itself is straight below */
+    if (w * w >= R * R || found.value <= swarf_most(away - m * im * chord, 0) + rounded) {
+        found.rim = rim_plane(w, away, R, m * im);
+        take_face(&found, under > over ? RIM_UNDER : RIM_OVER, found.rim.value);
+    }
     if (found.value < most) offer_face(trace, see, &found, best);
 }
 

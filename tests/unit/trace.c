@@ -74,8 +74,18 @@ static void check_bounds(const swarf_trace *trace, const double point[3], const 
     CHECK(there.value >= 0 || there.raw <= 0);
 }
 
+/* The plane that touches what a disc of radius R sweeps up a slope where the similar ellipse through a point has its
+ * normal: at `w` across, `depth` straight below the disc's middle. */
+static double rim_plane(double R, double slope, double w, double depth)
+{
+    const double tilt = slope / hypot(1, slope), away = depth / hypot(1, slope);
+    const double u = w / R, v = away / (R * tilt), length = hypot(u * tilt, v);
+    return (u * tilt * w + v * away) / length - R * tilt * hypot(u, v) / length;
+}
+
 /* Outside of what a flat end ramps through, which is convex, values are bounds by planes that touch it: none above the
- * distance, and as the best are nearly square to the way there, none below 0.45 of it, beside the rim's wall either. */
+ * distance, and as the best are nearly square to the way there, none below 0.45 of it, beside the rim's wall either, or
+ * below the rim's plane. */
 static void check_ramps(test_random *random)
 {
     const char *name;
@@ -99,6 +109,7 @@ static void check_ramps(test_random *random)
             if (distance < 1e-3 * voxel) continue;
             const swarf_touch touch = touch_at(&trace, point);
             CHECK(touch.value < distance + 1e-6);
+            CHECK(depth <= 0 || touch.value >= rim_plane(shape.radius, slope, w, depth) - 1e-9);
             least = fmin(least, touch.value / distance);
             outside++;
         }
