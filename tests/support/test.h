@@ -35,7 +35,8 @@ double test_random_in(test_random *random, double lo, double hi);
 uint64_t test_random_below(test_random *random, uint64_t count);
 
 /** How much is tried: with SWARF_TEST_FULL=1 all that a promise names, with SWARF_TEST_LIGHT=1 (the sanitizers) enough
- *  to walk every way of the code, else something between. */
+ *  to walk every way of the code, else something between. All may take longer than the 25 minutes that a test has:
+ *  tests/run --timeout 100000. */
 enum { TEST_LIGHT, TEST_USUAL, TEST_FULL };
 int test_size(void);
 
