@@ -36,12 +36,12 @@ typedef struct simplify_region {
     uint32_t stamp;
 } simplify_region;
 
-/** May not go; to be looked at; the true normals of its facets differ, so that it need not be looked at with the flat
- *  ones. */
+/** May not go; may go at a later attempt, not settled; the true normals of its facets differ, so that it need not be
+ *  looked at with the flat ones. */
 enum { SIMPLIFY_FIXED = 1, SIMPLIFY_DIRTY = 2, SIMPLIFY_BENT = 4 };
 
 /** Remove vertices while the error stays below `limit` (mm).
- *  `first`: the limit is new, so that all vertices are looked at; else only those whose state is SIMPLIFY_DIRTY. */
+ *  `first`: the limit is new, so that all vertices are looked at; else only those that `need` no more. */
 void swarf_simplify_region(simplify_region *region, double limit, int first);
 
 #endif

@@ -80,7 +80,7 @@ static void put_noughts(ring *around)
     for (int k = 0; k < 3; k++) {
         double *at = around->at[k], *true_normal = around->true_normal[k];
         for (int i = 0; i < 8; i++) at[(n & ~7) + i] = true_normal[(n & ~7) + i] = 0;
-        at[(n + 7) & ~7] = 0;
+        at[(n + 7) & ~7] = true_normal[(n + 7) & ~7] = 0;
     }
 }
 

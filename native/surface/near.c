@@ -405,12 +405,12 @@ void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3
         way[k] = point[k] - near->middle[k];
         square += way[k] * way[k];
     }
-    const double away = sqrt(square), block = -near->block - away; /* the first shape is not nearer */
+    const double away = sqrt(square), block = -near->block - away; /* the first shape comes no nearer */
     struct nearest found;
-    /* guessed to be in vain where traces may be as far */
+    /* most points are decided by moves; the others look at them again, with the first shape as the limit */
     if (near->count > 0 && near->seen[0].raw + away < block) {
         find_nearest(near, point, way, away, INFINITY, &found);
-        if (found.least + 2 * as_near < block) {
+        if (found.least + 2 * as_near < block) { /* nor as near, rounded as both are */
             tell(near, &found, out);
             return;
         }

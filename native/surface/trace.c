@@ -449,6 +449,8 @@ static void look_ball(const swarf_trace *trace, const double p[3], double most, 
     if (!(ball->centre_z - (p[2] - trace->point[2]) > value)) {
         const struct tilted see = see_above_ball(trace, p);
         look_cylinder(trace, &see, most, best);
+        /* its lower end lies in the ball, at whose equator both are as near but for rounding */
+        if (best->value < most && best->piece == 0) best->value = INFINITY;
     }
     if (value >= most) return;
     const double gradient[3] = {away > 0 ? way[0] / away : 0, away > 0 ? way[1] / away : 0,

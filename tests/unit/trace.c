@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Traces: a look at one with a limit tells what one without does, bit for bit, of all that is nearer than the limit,
  * and of nothing else that it is nearer; and tangents never promise more than there is. All cutters and motions. Beside
- * ramps of flat ends the value is never far below the distance. */
+ * ramps of flat ends the value is never far below the distance. On the surface of ramps of
+ * flat and ball ends normals and moments are right. */
 #include "surface/trace.h"
 
 #include <math.h>
@@ -9,6 +10,7 @@
 #include <string.h>
 
 #include "cases.h"
+#include "gradient.h"
 
 static const double voxel = 0.1;
 
@@ -72,6 +74,64 @@ static void check_bounds(const swarf_trace *trace, const double point[3], const 
     CHECK(touch->bounds == 0 || there.raw >= least - 1e-9);
     CHECK(touch->raw - sqrt(square) <= fmax(there.value, 0) + 1e-6);
     CHECK(there.value >= 0 || there.raw <= 0);
+}
+
+static double value_at(const void *trace, const double point[3])
+{
+    swarf_touch touch;
+    swarf_trace_look(trace, point, INFINITY, &touch);
+    return touch.value;
+}
+
+/* Where the surface of the sweep is smooth its normal is what values change by, and the cutter that stands at t touches
+ * it. Returns whether the point led there. */
+static int check_surface(const oracle_body *shape, const swarf_path *path, const swarf_trace *trace,
+                         const double point[3])
+{
+    const double step = 1e-6;
+    double at[3] = {point[0], point[1], point[2]}, slope[3];
+    swarf_touch touch;
+    swarf_trace_look(trace, at, INFINITY, &touch);
+    for (int i = 0; i < 20 && fabs(touch.value) > 1e-10; i++) {
+        for (int k = 0; k < 3; k++) at[k] -= touch.value * touch.gradient[k];
+        swarf_trace_look(trace, at, INFINITY, &touch);
+    }
+    if (!(fabs(touch.value) <= 1e-10) || fabs(test_gradient(value_at, trace, at, step, slope) - 1) > 1e-6) return 0;
+    double apart = 0;
+    for (int k = 0; k < 3; k++) apart = fmax(apart, fabs(slope[k] - touch.gradient[k]));
+    const double there = oracle_at(shape, path, at, touch.t);
+    if (!CHECK(apart < 1e-4) || !CHECK(fabs(there) < 1e-6))
+        printf("    piece %d at %.9g, %.9g, %.9g: normal %.2e off, the cutter %.2e away at t = %.9g\n", touch.piece,
+               at[0], at[1], at[2], apart, there, touch.t);
+    return 1;
+}
+
+/* Ramps of flat and ball ends in any direction, all round. */
+static void check_surfaces(test_random *random)
+{
+    const int ramps = test_size() == TEST_LIGHT ? 3 : 30;
+    for (int number = 0; number < 2 * ramps; number++) {
+        const char *name;
+        swarf_cutter *cutter = case_cutter(number & 1, &name);
+        const oracle_body shape = oracle_body_of(cutter, SWARF_PART_FLUTES);
+        const double way = test_random_in(random, 0, 2 * M_PI), run = test_random_in(random, 0.5, 6);
+        const double rise = run * exp(test_random_in(random, log(0.02), log(5)));
+        const double end = test_random_below(random, 2) ? rise : -rise;
+        const swarf_path path = oracle_line(1, 2, 3, 1 + run * cos(way), 2 + run * sin(way), 3 + end);
+        swarf_body *body = NULL;
+        if (!CHECK_OK(swarf_body_create(cutter, SWARF_PART_FLUTES, voxel, &body))) exit(test_end());
+        swarf_trace trace;
+        int on_surface = 0;
+        swarf_trace_make(body, &path, 7, 0, 1, &trace);
+        for (int i = 0; i < 200; i++) {
+            double point[3];
+            oracle_random_point(&shape, &path, 3 * voxel, random, point);
+            on_surface += check_surface(&shape, &path, &trace, point);
+        }
+        CHECK(on_surface > 50);
+        swarf_body_destroy(body);
+        swarf_cutter_release(cutter);
+    }
 }
 
 /* The plane that touches what a disc of radius R sweeps up a slope where the similar ellipse through a point has its
@@ -151,6 +211,7 @@ int main(void)
         swarf_body_destroy(body);
         swarf_cutter_release(cutter);
     }
+    check_surfaces(&random);
     check_ramps(&random);
     CHECK(counts[0] > 1000 && counts[1] > 1000 && bounded > 100);
     return test_end();

@@ -59,6 +59,7 @@ class Files:
             return
         panel.player.pause()
         panel.player.select(None)
+        panel.view.set_mark(None)
         view, report = panel.current_view(size), export.Report(panel)
         report.came.connect(panel.banner.progress, QtCore.Qt.QueuedConnection)
         call = panel.opening.call(
