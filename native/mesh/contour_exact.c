@@ -20,17 +20,25 @@ static const double one_face_cosine = 0.8;
 /* Eigenvalues below this part of the greatest: planes that differ by less than half of same_face. The first guess takes
  * planes apart from where they meet, so it is careful. */
 static const double least_eigenvalue = 1.5e-4, first_eigenvalue = 1e-3;
-/* How near to the vertex found its planes are taken, round by round, in parts of the way to the crossings. From afar
- * they are led on to the vertex as their faces bend, so that it comes within the next one's reach, which tells whether
- * the faces are there. */
-static const struct round {
-    double part;
-    int bent;
-} approach[] = {{0.5, 1}, {0.02, 0}, {0.2, 1}, {0.05, 0}, {0.01, 0}};
-enum { FIRST_TO_TELL = 1, ROUNDS = sizeof approach / sizeof *approach };
-/* The first round to tell ends them if it moves the vertex by less: what bends by that over half of the way bends by
- * 2e-5 over its own. */
-static const double settled = 0.01;
+/* A round of looking for where faces meet. */
+struct round {
+    double part;    /* how near to the vertex found its planes are taken, of the way to the crossings */
+    int bent;       /* they are led on from there to the vertex, as their faces bend up to there */
+    double settled; /* where it moves the vertex by less, and all faces are seen, ... */
+    int left_out;   /* ... so many of the next rounds are left out */
+};
+/* Planes that are led on bring the vertex within the next round's reach, which tells whether the faces are there: what
+ * bends by 0.01 over half of the way bends by 2e-5 over a fiftieth. */
+static const struct round quick_rounds[] = {
+    {0.5, 1, 0, 0}, {0.02, 0, 0.01, 3}, {0.2, 1, 0, 0}, {0.05, 0, 0, 0}, {0.01, 0, 0, 0}};
+/* The error of a round is the bend over its way, so each is well within the next one's reach. */
+static const struct round sure_rounds[] = {{0.5, 0, 1e-5, 2}, {0.2, 0, 1e-5, 1}, {0.05, 0, 0, 0}, {0.01, 0, 0, 0}};
+typedef struct rounds {
+    const struct round *rounds;
+    int count;
+} rounds;
+static const rounds quick = {quick_rounds, sizeof quick_rounds / sizeof *quick_rounds};
+static const rounds sure = {sure_rounds, sizeof sure_rounds / sizeof *sure_rounds};
 /* A face near the vertex is the one at the crossings if it has turned by less than 25 degrees on the way. */
 static const double met_again_cosine = 0.906;
 /* In voxels: on the surface; where Newton's steps end. A tenth and a hundredth of what the mesh promises. */
@@ -180,7 +188,8 @@ static int take_again(const cell *c, const face *const chosen[MOST_FACES], int c
 }
 
 /* Move the point where faces meet into the cell: 1 when it is one of the surface, 0 when it lies elsewhere. `value` is
- * that at `seen`; along the way from there it changes by no more than the way. */
+ * that at `seen`; along the way from there it changes by no more than the way, by sqrt 3 of it where a field is what
+ * was there first. */
 static int keep_if_there(const cell *c, const double seen[3], double value, double x[3])
 {
     const contour_bounds *bounds = &c->polygon->bounds;
@@ -193,21 +202,30 @@ static int keep_if_there(const cell *c, const double seen[3], double value, doub
 
 /* Where the chosen faces meet in the cell: the rank, or 1 when they do not. Planes from afar may lead out of the cell
  * though their faces meet in it, so that only the last round decides. */
-static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int count, double x[3])
+static int meet_in(const cell *c, const face *const chosen[MOST_FACES], int count, const rounds *how, double x[3])
 {
     contour_plane planes[MOST_FACES];
     double about[3], value = 0;
     const contour_bounds *bounds = &c->polygon->bounds;
     for (int i = 0; i < count; i++) planes[i] = chosen[i]->plane;
     int rank = swarf_contour_meet(planes, count, c->middle, first_eigenvalue, bounds, x), seen = 0;
-    for (int round = 0; round < ROUNDS && rank > 1; round++) {
+    for (int i = 0; i < how->count && rank > 1; i++) {
+        const struct round *round = &how->rounds[i];
         swarf_contour_clamp(bounds, x);
         memcpy(about, x, sizeof about);
-        seen = take_again(c, chosen, count, x, &approach[round], planes, &value);
+        seen = take_again(c, chosen, count, x, round, planes, &value);
         rank = swarf_contour_meet(planes, count, about, least_eigenvalue, bounds, x);
-        if (round == FIRST_TO_TELL && seen && apart(x, about) < settled * settled) break;
+        if (seen && apart(x, about) < round->settled * round->settled) i += round->left_out;
     }
     return rank > 1 && seen && keep_if_there(c, about, value, x) ? rank : 1;
+}
+
+/* Where the chosen faces meet. Two that are all the cell has are looked for with more care, where planes that are led
+ * on lead astray. */
+static int meet_faces(const cell *c, const face *const chosen[MOST_FACES], int count, double x[3])
+{
+    const int rank = meet_in(c, chosen, count, &quick, x);
+    return rank == 1 && c->count == 2 ? meet_in(c, chosen, count, &sure, x) : rank;
 }
 
 static void step_onto(const cell *c, double x[3], double value, const swarf_surface_point *found)

@@ -103,10 +103,13 @@ int main(void)
         printf("bear and cameo left out: no folder of shared data (SWARF_SHARED)\n");
         return test_end();
     }
-    check_job("bear", 256, 2e-5);
+    check_job("bear", 256, 4e-5); /* what is between surface and triangles is sampled: the coarser, the fewer */
     if (!full) return test_end();
     check_job("bear", 512, 1e-5);
     check_job("bear", 1024, 1e-5);
-    for (int n = 512; n <= 1024; n *= 2) check_job("cameo", n, 1e-4); /* of its relief columns know no more */
+    /* Of its relief columns know no more than 1e-4; and of crests thinner than a voxel that are in the mesh, coarse
+     * voxels tell some as unseen. */
+    check_job("cameo", 512, 2e-4);
+    check_job("cameo", 1024, 1e-4);
     return test_end();
 }

@@ -556,10 +556,54 @@ static void check_shallow(void)
     swarf_cutter_release(cutter);
 }
 
+/* A random program as it was seen: `met` of its vertices at least lie on edges, and all but a few on the surface. */
+static void check_known(uint64_t state, size_t met)
+{
+    test_random random = {state};
+    const double size = test_random_in(&random, 0.05, 0.2);
+    swarf_surface *surface = NULL;
+    swarf_surface_near *near = NULL;
+    swarf_mesh *mesh = NULL;
+    swarf_contour_report report = {0};
+    swarf_stock *stock = stock_random(&random, size, 6, &surface);
+    swarf_contour_options options = swarf_contour_options_default();
+    options.error_mm = 0;
+    options.surface = surface;
+    if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) exit(test_end());
+    if (!CHECK_OK(swarf_surface_near_create(surface, &near))) exit(test_end());
+    CHECK(report.sharp_vertices >= met);
+    const swarf_triangles t = swarf_mesh_triangles(mesh);
+    size_t off = 0;
+    for (size_t i = 0; i < t.vertex_count; i++) {
+        double p[3];
+        swarf_box about;
+        swarf_surface_point found;
+        for (int k = 0; k < 3; k++) {
+            p[k] = t.xyz[3 * i + k];
+            about.lo[k] = p[k] - size;
+            about.hi[k] = p[k] + size;
+        }
+        CHECK_OK(swarf_surface_gather(near, SIZE_MAX, &about));
+        swarf_surface_evaluate(near, p, &found);
+        off += fabs(found.value) > 1.2e-3 * size;
+    }
+    CHECK(off <= 4);
+    printf("known program: %zu vertices on edges, %zu of %zu off the surface\n", report.sharp_vertices, off,
+           t.vertex_count);
+    swarf_surface_near_destroy(near);
+    swarf_mesh_release(mesh);
+    swarf_surface_release(surface);
+    swarf_stock_destroy(stock);
+}
+
 int main(void)
 {
     check_surfaces();
     check_shallow();
+    /* 952 are met and 1 is off, 934 with quick rounds alone and 20 off where points out of sight are kept; 1116 and 2,
+     * 1113 with quick rounds alone, 1099 with sure ones alone */
+    check_known(0x256bed0295c89b26, 945);
+    check_known(0x5ad0cd5c394558a9, 1115);
     const test_random begin = test_random_begin(41);
     const int full = getenv("SWARF_TEST_FULL") != NULL; /* else every other motion of each cutter */
     for (int index = 0; index < CASE_CUTTERS; index++)
