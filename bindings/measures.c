@@ -252,7 +252,7 @@ const char mesh_thickness_doc[] =
     "the\n"
     "material, from the triangle's middle and near its corners, to a face within 60 degrees of opposite; inf where "
     "there\n"
-    "is none.";
+    "is none. GeometryError: longer or farther away than 1e6 mm.";
 
 PyObject *mesh_thickness(PyObject *self, PyObject *args, PyObject *keywords)
 {

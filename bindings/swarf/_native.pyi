@@ -734,7 +734,7 @@ class Mesh:
     def thickness(self, *, progress: Progress = None) -> memoryview:
         """Thickness of the wall behind each triangle, mm: a read-only float32 view, the least of four rays straight
         into the material, from the triangle's middle and near its corners, to a face within 60 degrees of opposite; inf
-        where there is none."""
+        where there is none. GeometryError: longer or farther away than 1e6 mm."""
     def placed(self, placement: _Table, /) -> Mesh:
         """The mesh turned and moved, as a new Mesh: ``placement`` is three rows of rotation and shift (mm)."""
     def origins(

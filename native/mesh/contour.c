@@ -18,6 +18,7 @@
  * then still touches itself does so on the stock's surface. */
 enum { ATTEMPTS = 7, CLOSE_LOOKS = 7 };
 
+static const double farthest = 1e6; /* mm, as lengths everywhere: an error must be a float in voxels */
 /* Of the error, what shifting vertices may take to keep the volume; in voxels, that where there is none. A face that
  * bends evenly takes two thirds of what leaving vertices out took. */
 static const double regain_part = 0.2, regain_least = 0.01;
@@ -360,8 +361,8 @@ static swarf_status make(contour *work, const swarf_contour_options *options, co
 swarf_status swarf_contour_check(const swarf_contour_options *options)
 {
     SWARF_REQUIRE(options && options->size == sizeof *options, "mesh: options missing or of another version");
-    SWARF_REQUIRE(isfinite(options->error_mm) && options->error_mm >= 0, "mesh: error %g mm is not 0 or positive",
-                  options->error_mm);
+    SWARF_REQUIRE(options->error_mm >= 0 && options->error_mm <= farthest, "mesh: error %g mm; 0 to %g are possible",
+                  options->error_mm, farthest);
     SWARF_REQUIRE(options->error_mm > 0 || !options->triangle_budget,
                   "mesh: a budget of %zu triangles needs an error (mm) that may be spent on it",
                   options->triangle_budget);

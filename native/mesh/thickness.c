@@ -15,6 +15,7 @@
 /* Rays per triangle: from its middle, and from near its corners, where walls that are not of one thickness are thinnest
  * and thickest; and how near. */
 enum { RAYS = 4, TRIANGLES = SWARF_PACKET / RAYS, PACKETS_AT_ONCE = 256 };
+static const double farthest = 1e6; /* mm, as swarf_fixtures_create() takes them */
 static const double corner_weight = 0.98;
 /* Cosine of the ray and the face it leaves by: edges of 60 degrees and more are none of a wall. */
 static const double opposite = 0.5;
@@ -96,6 +97,9 @@ swarf_status swarf_mesh_thickness(const swarf_mesh *mesh, const swarf_progress *
     const swarf_box box = swarf_mesh_topology(mesh).box;
     double most = 0;
     for (int k = 0; k < 3; k++) most = fmax(most, fmax(box.hi[k] - box.lo[k], fmax(fabs(box.lo[k]), fabs(box.hi[k]))));
+    if (!(most <= farthest))
+        return swarf_fail(SWARF_ERROR_GEOMETRY, "mesh: coordinates up to %g mm; thickness is measured up to %g", most,
+                          farthest);
     m.inset = 8 * FLT_EPSILON * most; /* some steps of the coordinates that the rays are traced in */
     SWARF_TRY(swarf_fixtures_create(&m.t, 1, &m.scene));
     const size_t packets = (m.t.triangle_count + TRIANGLES - 1) / TRIANGLES;

@@ -14,6 +14,8 @@ struct swarf_fixtures {
 
 namespace {
 
+constexpr double farthest = 1e6; /* as stocks and moves; Embree ends the process where rays start beyond 1.8e18 */
+
 swarf_status add_mesh(swarf_fixtures &fixtures, const swarf_triangles &mesh)
 {
     for (size_t i = 0; i < 3 * mesh.triangle_count; i++)
@@ -23,7 +25,9 @@ swarf_status add_mesh(swarf_fixtures &fixtures, const swarf_triangles &mesh)
     for (size_t i = 0; i < mesh.vertex_count; i++)
         for (size_t axis = 0; axis < 3; axis++) {
             const double at = static_cast<double>(mesh.xyz[3 * i + axis]);
-            if (!std::isfinite(at)) return swarf_fail(SWARF_ERROR_ARGUMENT, "fixture: vertex %zu is not finite", i);
+            if (!(std::fabs(at) <= farthest))
+                return swarf_fail(SWARF_ERROR_ARGUMENT, "fixture: vertex %zu is at %g mm in %c; up to %g is possible",
+                                  i, at, "xyz"[axis], farthest);
             fixtures.box.lo[axis] = std::fmin(fixtures.box.lo[axis], at);
             fixtures.box.hi[axis] = std::fmax(fixtures.box.hi[axis], at);
         }

@@ -11,7 +11,7 @@ extern "C" {
 
 typedef struct swarf_fixtures swarf_fixtures;
 
-/** Copies the triangles. SWARF_ERROR_ARGUMENT for a vertex number out of range. */
+/** Copies the triangles. SWARF_ERROR_ARGUMENT for a vertex number out of range or a vertex beyond 1e6 mm. */
 swarf_status swarf_fixtures_create(const swarf_triangles *triangles, size_t count, swarf_fixtures **out);
 /** NULL is legal. */
 void swarf_fixtures_destroy(swarf_fixtures *fixtures);

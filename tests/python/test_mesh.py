@@ -261,7 +261,7 @@ def test_command(stock, tmp_path, capsys):
     assert main(["mesh", str(tmp_path / "loose-1.stl"), "--measure"]) == 0
     assert json.loads(capsys.readouterr().out)["contour"] is None
     assert main(["mesh", source, "--error", "0.01", "--budget", "9", "--measure"]) == 1
-    assert "more than 9" in capsys.readouterr().err
+    assert "more than 9: an error of 0.01 mm leaves no fewer" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -271,6 +271,7 @@ def test_command(stock, tmp_path, capsys):
         (["--split", "--measure"], "give --output"),
         (["--error", "-1", "--measure"], "error -1"),
         (["--error", "nan", "--measure"], "error nan"),
+        (["--error", "1e100", "--measure"], "error 1e+100"),
         (["--budget", "-1", "--measure"], "budget -1"),
         (["--output", "part.iges"], "unknown suffix"),
         (["--output", "/none/part.stl"], "cannot be written"),

@@ -222,6 +222,8 @@ static void check_refusals(void)
     CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, "error -1 mm");
     options.error_mm = NAN;
     CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, "error");
+    options.error_mm = 1e300; /* no float */
+    CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, "error 1e+300 mm");
     options.error_mm = 0;
     options.triangle_budget = 5;
     CHECK_FAILS(swarf_mesh_contour(stock, &options, NULL, &mesh, NULL), SWARF_ERROR_ARGUMENT, "budget of 5");

@@ -169,6 +169,11 @@ static void check_errors(void)
                 "no length");
     CHECK(!below && !above);
     swarf_mesh_release(open);
+    float thick[12];
+    shape_box(&s, (double[]){0, 0, -2e20}, (double[]){1, 1, 1}); /* rays that start there would end the process */
+    swarf_mesh *far = mesh_of(&s);
+    CHECK_FAILS(swarf_mesh_thickness(far, NULL, thick), SWARF_ERROR_GEOMETRY, "up to 2e+20 mm");
+    swarf_mesh_release(far);
 }
 
 /* ---- thickness ---- */

@@ -134,12 +134,14 @@ static void check_fixtures(swarf_scene *scene)
 {
     static const float xyz[] = {-10, -10, 25, 60, -10, 25, 60, 60, 25, -10, 60, 25};
     static const uint32_t index[] = {0, 1, 2, 0, 2, 3}, wrong[] = {0, 1, 4};
-    const swarf_triangles plate = {xyz, 4, index, 2}, broken = {xyz, 4, wrong, 1};
+    static const float away[] = {0, 0, 0, 1, 0, 0, 0, -2e20f, 0};
+    const swarf_triangles plate = {xyz, 4, index, 2}, broken = {xyz, 4, wrong, 1}, far = {away, 3, index, 1};
     const swarf_picture_options options = small_options();
     swarf_camera camera;
     swarf_pick pick;
     CHECK_OK(swarf_camera_fit(SWARF_VIEW_TOP, 0, &block_box, 1, &camera));
     CHECK_FAILS(swarf_scene_set_fixtures(scene, &broken, 1), SWARF_ERROR_ARGUMENT, "vertex 4 of 4");
+    CHECK_FAILS(swarf_scene_set_fixtures(scene, &far, 1), SWARF_ERROR_ARGUMENT, "vertex 2 is at -2e+20 mm in y");
     CHECK_OK(swarf_scene_set_fixtures(scene, &plate, 1));
     CHECK_OK(swarf_scene_pick(scene, &camera, &options, 0.1, 0.2, &pick));
     CHECK(pick.seen == SWARF_SEEN_FIXTURE);

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import os
 import sys
 from typing import Any, Optional
@@ -143,8 +142,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Mesh, write, measure."""
     if abs(arguments.threads) >= 1 << 31:
         raise ValueError(f"threads: {arguments.threads} is not in 0 .. 1024 (0: one per core)")
-    if arguments.error is not None and not (math.isfinite(arguments.error) and arguments.error >= 0):
-        raise ValueError(f"error {arguments.error:g}: not a length in mm (0 or more)")
+    if arguments.error is not None and not 0 <= arguments.error <= 1e6:
+        raise ValueError(f"error {arguments.error:g}: not a length in mm (0 to 1e6)")
     if not 0 <= arguments.budget < 1 << 32:
         raise ValueError(f"budget {arguments.budget}: not a number of triangles")
     if not (arguments.output or arguments.measure):
@@ -186,6 +185,6 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"swarf: note: {thin}", file=sys.stderr)
     if not made.budget_met:
         print(f"swarf: warning: {made.triangles} triangles are more than {arguments.budget}: an error of "
-              f"{made.error_mm:g} mm leaves no fewer; allow a larger --error", file=sys.stderr)
+              f"{error:g} mm leaves no fewer; allow a larger --error", file=sys.stderr)
         return FINDINGS
     return DONE

@@ -22,7 +22,7 @@ SWARF_API swarf_status swarf_mesh_create_stock(swarf_stock *stock, double adapti
 /** How a stock becomes a mesh with sharp edges. */
 typedef struct swarf_contour_options {
     size_t size;                  /**< sizeof(swarf_contour_options) */
-    double error_mm;              /**< >= 0; vertices are left out while the mesh stays this near to the full one */
+    double error_mm;              /**< 0 to 1e6; vertices are left out while the mesh stays this near to the full one */
     size_t triangle_budget;       /**< no more triangles than this, 0: no limit */
     const swarf_surface *surface; /**< of the stock, borrowed for the call; NULL: the field alone */
     size_t moves;                 /**< the stock is the surface after its first so many moves */
@@ -192,7 +192,7 @@ SWARF_API swarf_status swarf_mesh_split(const swarf_mesh *mesh, const double poi
 /** Thickness of the wall behind each triangle, in mm: the least of four rays straight into the material, from its
  *  middle and near its corners, to where it ends at a face within 60 degrees of opposite; a ray that ends elsewhere,
  *  beside an edge, tells of no wall. INFINITY: none of them does, or a triangle without area. `out`: one per triangle.
- */
+ *  SWARF_ERROR_GEOMETRY: it is more than 1e6 mm long or away. */
 SWARF_API swarf_status swarf_mesh_thickness(const swarf_mesh *mesh, const swarf_progress *progress, float *out);
 
 /** The curves along which a plane cuts a mesh, as polylines. Owned by the caller; immutable. */

@@ -78,7 +78,7 @@ SWARF_API swarf_status swarf_scene_update(swarf_scene *scene);
 SWARF_API swarf_status swarf_scene_set_surface(swarf_scene *scene, swarf_surface *surface, size_t moves, double part);
 
 /** Show these bodies beside the stock, in place of those before; count 0: none. The triangles are copied.
- *  SWARF_ERROR_ARGUMENT for a vertex number out of range or a coordinate that is not finite. */
+ *  SWARF_ERROR_ARGUMENT for a vertex number out of range or a coordinate beyond 1e6 mm. */
 SWARF_API swarf_status swarf_scene_set_fixtures(swarf_scene *scene, const swarf_triangles *triangles, size_t count);
 
 /** First hits of `count` rays (origin and direction 3 doubles each, mm) with the stock's surface: distance along the
