@@ -42,7 +42,7 @@ struct swarf_surface_near {
     struct seen *seen;
     size_t count, room;
     double middle[3];
-    double block;               /* value there of the block that is the first shape; INFINITY where it is none */
+    double block_value;         /* there, of the block that is the first shape; INFINITY where it is none */
     swarf_surface_near *before; /* of the set-up before, NULL where there is none */
 };
 
@@ -225,11 +225,11 @@ static swarf_status begin_box(struct gathering *g)
         square += 0.25 * (where->hi[k] - where->lo[k]) * (where->hi[k] - where->lo[k]);
     }
     g->reach = sqrt(square);
-    g->near->block = INFINITY;
+    g->near->block_value = INFINITY;
     if (g->near->surface->block) {
         swarf_surface_point first;
         swarf_surface_first(g->near->surface, g->near->middle, &first);
-        g->near->block = first.value;
+        g->near->block_value = first.value;
     }
     return SWARF_OK;
 }
@@ -405,12 +405,12 @@ void swarf_surface_evaluate(const swarf_surface_near *near, const double point[3
         way[k] = point[k] - near->middle[k];
         square += way[k] * way[k];
     }
-    const double away = sqrt(square), block = -near->block - away; /* the first shape comes no nearer */
+    const double away = sqrt(square), to_block = -near->block_value - away; /* the first shape comes no nearer */
     struct nearest found;
     /* most points are decided by moves; the others look at them again, with the first shape as the limit */
-    if (near->count > 0 && near->seen[0].raw + away < block) {
+    if (near->count > 0 && near->seen[0].raw + away < to_block) {
         find_nearest(near, point, way, away, INFINITY, &found);
-        if (found.least + 2 * as_near < block) { /* nor as near, rounded as both are */
+        if (found.least + 2 * as_near < to_block) { /* nor as near, rounded as both are */
             tell(near, &found, out);
             return;
         }

@@ -313,14 +313,14 @@ static struct rim rim_plane(double w, double away, double R, double tilt)
 /* What comes nearest of a cylinder: its wall, a flat end, the slanted surface below or above, or its rim there. */
 enum face { WALL, LOW, HIGH, UNDER, OVER, RIM_UNDER, RIM_OVER };
 
-struct nearest {
+struct nearest_face {
     enum face face;
     double value, rho, chord, norm;
     struct rim rim;
 };
 
 /* The rest of what there is to tell of it: divisions, which only the face that is nearest is worth. */
-static void offer_face(const swarf_trace *trace, const struct tilted *see, const struct nearest *found,
+static void offer_face(const swarf_trace *trace, const struct tilted *see, const struct nearest_face *found,
                        swarf_touch *best)
 {
     const double m = trace->slope, im = trace->cosine, R = see->R, s = see->s, w = see->w;
@@ -366,7 +366,7 @@ static void offer_face(const swarf_trace *trace, const struct tilted *see, const
     offer(best, found->value, gradient, trace->t0 + (trace->t1 - trace->t0) * at / trace->run, piece);
 }
 
-static void take_face(struct nearest *found, enum face face, double value)
+static void take_face(struct nearest_face *found, enum face face, double value)
 {
     if (value <= found->value) return;
     found->value = value;
@@ -377,7 +377,7 @@ static void take_face(struct nearest *found, enum face face, double value)
 static void look_cylinder(const swarf_trace *trace, const struct tilted *see, double most, swarf_touch *best)
 {
     const double m = trace->slope, im = trace->cosine, R = see->R, s = see->s, w = see->w, z = see->z;
-    struct nearest found = {.rho = sqrt(see->beyond * see->beyond + w * w)};
+    struct nearest_face found = {.rho = sqrt(see->beyond * see->beyond + w * w)};
     found.face = WALL;
     found.value = found.rho - R;
     take_face(&found, LOW, see->low);

@@ -38,7 +38,7 @@ SWARF_API void swarf_surface_release(swarf_surface *surface);
 typedef struct swarf_surface_point {
     double value;     /**< signed distance in mm as in the stock's field: negative in material; 0 on the surface */
     double normal[3]; /**< unit, out of the material: the gradient of `value` */
-    double t;         /**< 0..1 along the move where the cutter touches */
+    double t;         /**< 0..1 along the move where the cutter touches; an end of a plunge, on its wall too */
     int64_t move;     /**< index into the program; -1: the first shape; below -2: swarf_surface_origin() tells */
     /** Of the first shape: block 0 -x, 1 +x, 2 -y ... 5 +z, else 0. Of a cutter: number
      *  of the line or arc among those its meridian is cut into, from the tip upwards. */
