@@ -23,16 +23,16 @@ static const double least_eigenvalue = 1.5e-4, first_eigenvalue = 1e-3;
 /* A round of looking for where faces meet. */
 struct round {
     double part;    /* how near to the vertex found its planes are taken, of the way to the crossings */
-    int bent;       /* they are led on from there to the vertex, as their faces bend up to there */
     double settled; /* where it moves the vertex by less, and all faces are seen, ... */
     int left_out;   /* ... so many of the next rounds are left out */
+    int bent;       /* planes are led on from there to the vertex, as their faces bend up to there */
 };
 /* Planes that are led on bring the vertex within the next round's reach, which tells whether the faces are there: what
  * bends by 0.01 over half of the way bends by 2e-5 over a fiftieth. */
 static const struct round quick_rounds[] = {
-    {0.5, 1, 0, 0}, {0.02, 0, 0.01, 3}, {0.2, 1, 0, 0}, {0.05, 0, 0, 0}, {0.01, 0, 0, 0}};
+    {0.5, 0, 0, 1}, {0.02, 0.01, 3, 0}, {0.2, 0, 0, 1}, {0.05, 0, 0, 0}, {0.01, 0, 0, 0}};
 /* The error of a round is the bend over its way, so each is well within the next one's reach. */
-static const struct round sure_rounds[] = {{0.5, 0, 1e-5, 2}, {0.2, 0, 1e-5, 1}, {0.05, 0, 0, 0}, {0.01, 0, 0, 0}};
+static const struct round sure_rounds[] = {{0.5, 1e-5, 2, 0}, {0.2, 1e-5, 1, 0}, {0.05, 0, 0, 0}, {0.01, 0, 0, 0}};
 typedef struct rounds {
     const struct round *rounds;
     int count;
