@@ -14,7 +14,14 @@ struct swarf_fixtures {
 
 namespace {
 
-constexpr double farthest = 1e6; /* as stocks and moves; Embree ends the process where rays start beyond 1.8e18 */
+constexpr double farthest = 1e6; /* as stocks and moves */
+/* Rays that start farther out cannot meet a box within `farthest`; beyond 1.8e18 Embree ends the process. */
+constexpr float farthest_ray = 1e9F;
+
+bool is_near(float x, float y, float z)
+{
+    return std::fabs(x) < farthest_ray && std::fabs(y) < farthest_ray && std::fabs(z) < farthest_ray;
+}
 
 swarf_status add_mesh(swarf_fixtures &fixtures, const swarf_triangles &mesh)
 {
@@ -109,7 +116,9 @@ extern "C" unsigned swarf_fixtures_trace(const swarf_fixtures *fixtures, swarf_r
         packet.ray.dir_z[lane] = static_cast<float>(rays->direction[2][ray]);
         packet.ray.tnear[lane] = 0;
         packet.ray.tfar[lane] = static_cast<float>(std::fmin(rays->reach[ray], rays->distance[ray]) - moved[lane]);
-        if (packet.ray.tfar[lane] < 0) valid[lane] = 0;
+        if (packet.ray.tfar[lane] < 0 ||
+            !is_near(packet.ray.org_x[lane], packet.ray.org_y[lane], packet.ray.org_z[lane]))
+            valid[lane] = 0;
         packet.ray.time[lane] = 0;
         packet.ray.mask[lane] = ~0u;
         packet.ray.id[lane] = lane;

@@ -147,6 +147,10 @@ static void check_fixtures(swarf_scene *scene)
     CHECK(pick.seen == SWARF_SEEN_FIXTURE);
     CHECK_NEAR(pick.point[2], 25, 1e-4);
     CHECK_NEAR(pick.normal[2], 1, 1e-6);
+    swarf_camera wide = camera;
+    wide.height_mm = 1e30; /* rays that start there would end the process */
+    CHECK_OK(swarf_scene_pick(scene, &wide, &options, 0.1, 0.2, &pick));
+    CHECK(pick.seen == SWARF_SEEN_NOTHING);
     CHECK_OK(swarf_scene_set_fixtures(scene, NULL, 0));
     CHECK_OK(swarf_scene_pick(scene, &camera, &options, 0.1, 0.2, &pick));
     CHECK(pick.seen == SWARF_SEEN_STOCK);
