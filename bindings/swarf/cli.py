@@ -14,7 +14,7 @@ from typing import Optional, Sequence
 
 from . import _native
 from .commands import collect
-from .console import FAILED, Parser, discard, one_line
+from .console import FAILED, Parser, one_line, tell
 
 
 def make_parser(commands: dict[str, ModuleType]) -> Parser:
@@ -27,12 +27,14 @@ def make_parser(commands: dict[str, ModuleType]) -> Parser:
 
 
 def interrupt_by_signals() -> None:
-    """Let SIGTERM and Ctrl-C end the work in order: by their defaults they would leave half-written files behind."""
+    """Let SIGTERM, Ctrl-C and a terminal that is closed end the work in order: by their defaults they would leave
+    half-written files behind."""
     if threading.current_thread() is not threading.main_thread():
         return
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    for number in (signal.SIGINT, signal.SIGHUP):
+        if signal.getsignal(number) == signal.SIG_DFL:  # not in the background, not after nohup
+            signal.signal(number, signal.default_int_handler)
 
 
 def open_streams() -> None:
@@ -63,8 +65,5 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         message = one_line(error) or type(error).__name__
     except KeyboardInterrupt:
         message = "interrupted"
-    try:
-        print(f"swarf: error: {message}", file=sys.stderr)
-    except OSError:  # the status alone must tell
-        discard(sys.stderr)
+    tell(f"error: {message}")
     return FAILED

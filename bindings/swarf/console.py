@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import sys
 import tempfile
@@ -38,6 +39,14 @@ def say(lines: Iterable[str]) -> None:
             raise OSError(error.errno, error.strerror, "standard output") from None
 
 
+def tell(line: str) -> None:
+    """Write a line to standard error; when that fails, as in a terminal that was closed, the work goes on unheard."""
+    try:
+        print(f"swarf: {line}", file=sys.stderr)
+    except OSError:
+        discard(sys.stderr)
+
+
 def discard(stream: IO[str]) -> None:
     """Let a stream that cannot be written swallow what it still holds: Python would try again when it ends."""
     null = os.open(os.devnull, os.O_WRONLY)
@@ -54,10 +63,12 @@ def check_writable(path: str) -> None:
     """OSError unless a file can be put there; leaves nothing behind."""
     if os.path.exists(path) and not os.path.isfile(path):
         raise OSError(f"{path}: cannot be written: it is not a regular file")
-    folder = os.path.dirname(os.path.abspath(path))
+    place = os.path.realpath(path)
     try:
+        with contextlib.suppress(FileNotFoundError):  # other errors: a name too long, links that go round
+            os.stat(place)
         # Outputs are written beside their place and renamed: what counts is the folder.
-        with tempfile.TemporaryFile(dir=folder):
+        with tempfile.TemporaryFile(dir=os.path.dirname(place)):
             pass
     except OSError as error:
         raise OSError(f"{path}: cannot be written: {error.strerror or error}") from None

@@ -42,15 +42,15 @@ def write_text(text: str, path: str) -> None:
 
 
 def _write(text: str, path: str) -> None:
-    folder = os.path.dirname(os.path.abspath(path))
-    handle, temporary = tempfile.mkstemp(dir=folder, prefix=".swarf-")
+    place = os.path.realpath(path)  # renaming over a link would replace the link
+    handle, temporary = tempfile.mkstemp(dir=os.path.dirname(place), prefix=".swarf-")
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as stream:
             stream.write(text)
         umask = os.umask(0)  # mkstemp makes private files; a report is an ordinary one
         os.umask(umask)
         os.chmod(temporary, 0o666 & ~umask)
-        os.replace(temporary, path)
+        os.replace(temporary, place)
     except BaseException:
         os.unlink(temporary)
         raise

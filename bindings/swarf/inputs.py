@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Optional, Sequence
 
 from . import _native, gcode, holders, placement, readers, specs
-from .console import one_line
+from .console import one_line, tell
 from .job import Job
 from .progress import Bar
 from .simulate import DEFAULT_RESOLUTION
@@ -198,14 +197,14 @@ def print_notes(job: Job) -> None:
     if job.stock is not None and job.stock["kind"] == "result":
         print_notes(job.stock["job"])
     for note in job.program.notes:
-        print(f"swarf: {note[0]}: {gcode.note_text(note)}", file=sys.stderr)
+        tell(f"{note[0]}: {gcode.note_text(note)}")
     for text in job.notes:
-        print(f"swarf: note: {one_line(text)}", file=sys.stderr)
+        tell(f"note: {one_line(text)}")
 
 
 def print_findings(lines: Sequence[str]) -> None:
     """The first findings, one a line, on stderr."""
     for line in lines[:FINDINGS_SHOWN]:
-        print(f"swarf: {line}", file=sys.stderr)
+        tell(line)
     if len(lines) > FINDINGS_SHOWN:
-        print(f"swarf: note: {len(lines) - FINDINGS_SHOWN} more findings are in the report", file=sys.stderr)
+        tell(f"note: {len(lines) - FINDINGS_SHOWN} more findings are in the report")

@@ -9,6 +9,7 @@ from typing import Any, Callable, Iterable, Iterator, Optional, TextIO, TypeVar
 
 from ._native import Cancelled
 from .aliases import Progress as Report
+from .console import discard
 
 __all__ = ["Bar", "Report", "Stages", "TURNS", "check", "share", "told"]
 
@@ -90,12 +91,19 @@ class Bar:
         line = f"{stage:8} [{'#' * filled}{'.' * (width - filled)}] {100 * filled // width:3d} %"
         if line != self._drawn:
             self._drawn = line
-            self.stream.write("\r" + line)
-            self.stream.flush()
+            self._draw("\r" + line)
 
     def close(self) -> None:
         """Remove the bar; what is written next starts on a clean line."""
         if self._drawn:
-            self.stream.write("\r" + " " * len(self._drawn) + "\r")
-            self.stream.flush()
+            self._draw("\r" + " " * len(self._drawn) + "\r")
             self._drawn = ""
+
+    def _draw(self, text: str) -> None:
+        """A terminal that has gone stops no work."""
+        try:
+            self.stream.write(text)
+            self.stream.flush()
+        except OSError:
+            self.active = False
+            discard(self.stream)

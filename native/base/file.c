@@ -99,16 +99,18 @@ swarf_status swarf_file_begin(const char *path, swarf_file_writer *writer)
         free(copy);
         return swarf_fail(SWARF_ERROR_IO, "%s: is a folder, not a file", path);
     }
-    const size_t length = strlen(copy);
     char *temporary = NULL;
-    if (!exists || S_ISREG(info.st_mode)) { /* devices and pipes are written to, not replaced */
-        temporary = malloc(length + 8);
+    if (!exists || S_ISREG(info.st_mode)) {         /* devices and pipes are written to, not replaced */
+        static const char name[] = ".swarf-XXXXXX"; /* the target's own may be as long as the system takes */
+        const char *slash = strrchr(copy, '/');
+        const size_t folder = slash ? (size_t)(slash - copy) + 1 : 0;
+        temporary = malloc(folder + sizeof name);
         if (!temporary) {
             free(copy);
             return swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
         }
-        memcpy(temporary, copy, length);
-        memcpy(temporary + length, ".XXXXXX", 8);
+        memcpy(temporary, copy, folder);
+        memcpy(temporary + folder, name, sizeof name);
     }
     FILE *stream = temporary ? open_beside(temporary) : fopen(copy, "wb");
     if (!stream) {

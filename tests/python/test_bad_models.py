@@ -36,6 +36,9 @@ def test_everything_cut_away(tmp_path, capsys):
     stock.write(tmp_path / "none.vdb")
     assert main(["mesh", str(tmp_path / "none.vdb"), "--measure", "--thickness"]) == 0
     assert json.loads(capsys.readouterr().out)["pieces"] == 0
+    for words in (["--split"], ["--split-at", "z=1"]):
+        assert main(["mesh", str(tmp_path / "none.vdb"), *words, "--output", str(tmp_path / "piece.stl")]) == 2
+        assert "none.vdb: nothing is left of it" in capsys.readouterr().err
     for suffix in SUFFIXES:
         mesh.write(tmp_path / ("none" + suffix))
         if suffix in (".stl", ".ply"):

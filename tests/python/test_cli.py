@@ -14,6 +14,7 @@ import swarf
 from swarf import readers
 from conftest import GCODE, SLOT_MM3
 from swarf.cli import main
+from swarf.progress import Bar
 
 STOCK = "box:0,0,-10,60,40,0"
 TOOL = "1=flat:d=6,l=20"
@@ -187,6 +188,9 @@ def test_impossible_inputs(refused, tmp_path, name, content, says):
         (("--output", "no/s.stl"), ["no/s.stl", "written"]),
         (("--report", "/proc/r.json"), ["/proc/r.json"]),
         (("--output", "folder.stl"), ["regular file"]),
+        (("--output", "n" * 252 + ".stl"), ["n.stl: cannot be written: File name too long"]),
+        (("--output", "round.stl"), ["round.stl: cannot be written: Too many levels of symbolic links"]),
+        (("--output", "nowhere.stl"), ["nowhere.stl: cannot be written: No such file"]),
         (("--output", "s.stl", "--output", "./s.stl"), ["two outputs"]),
         (("--stock", "old.stl", "--output", "old.stl"), ["old.stl: is read, too"]),
         (("--then", "old.nc", "--output", "s.stl", "--report", "old.json", "--machine", "old.json"), ["is read, too"]),
@@ -194,6 +198,8 @@ def test_impossible_inputs(refused, tmp_path, name, content, says):
 )
 def test_outputs_are_checked_first(refused, program, tmp_path, words, says):
     (tmp_path / "folder.stl").mkdir()
+    (tmp_path / "round.stl").symlink_to("round.stl")
+    (tmp_path / "nowhere.stl").symlink_to("none/part.stl")
     for name in ("old.stl", "old.json", "old.nc"):
         (tmp_path / name).write_text("old")
     # A voxel that takes minutes: the refusal must come before the work.
@@ -316,6 +322,44 @@ def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, prog
     assert main(["simulate", *cut, "--parameters", str(tmp_path / "empty.var")]) == 0
 
 
+def test_names_as_long_as_the_system_takes_and_links(program, tmp_path):
+    (tmp_path / "away").mkdir()
+    long = [tmp_path / ("n" * (255 - len(suffix)) + suffix) for suffix in (".stl", ".vdb", ".png", ".json")]
+    linked = [tmp_path / ("part" + path.suffix) for path in long]
+    for path in linked:
+        path.symlink_to(tmp_path / "away" / path.name)
+    for stl, vdb, png, report in (long, linked):
+        assert main(["simulate", str(program), "--stock", STOCK, "--tool", TOOL, "--voxel", "2", "--output", str(stl),
+                     "--output", str(vdb), "--picture", str(png), "--report", str(report)]) == 0
+    assert all(path.is_symlink() for path in linked) and len(list((tmp_path / "away").iterdir())) == 4
+    assert all(path.stat().st_size for path in long + linked)
+
+
+def test_standard_error_that_has_gone_changes_nothing(launcher, program, tmp_path):
+    """The result is told by files and the exit status."""
+    read, write = os.pipe()
+    os.close(read)
+    try:
+        swarf.Stock.box((0, 0, 0), (4, 4, 4), 1.0).write(tmp_path / "block.vdb")
+        done = subprocess.run([launcher, "mesh", "block.vdb", "--output", "block.step"], cwd=tmp_path, stderr=write,
+                              timeout=120, check=False)
+    finally:
+        os.close(write)
+    assert done.returncode == 0 and (tmp_path / "block.step").stat().st_size
+
+
+def test_a_terminal_that_is_closed_stops_no_work():
+    keyboard, screen = os.openpty()
+    with open(screen, "w", encoding="utf-8") as stream:
+        bar = Bar(stream)
+        bar("cut", 0.1)
+        assert bar.active and os.read(keyboard, 99).startswith(b"\rcut")
+        os.close(keyboard)
+        bar("cut", 0.5)
+        bar.close()
+        assert not bar.active
+
+
 def test_help_and_version(swarf_run):
     assert swarf_run("--version")[1].startswith("swarf 0.")
     status, out, _ = swarf_run("simulate", "--help")
@@ -339,7 +383,7 @@ def answer(number, how):
     return lambda: signal.signal(number, how)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_signals_end_it_like_an_error(launcher, tmp_path, number):
     fifo = tmp_path / "job.nc"
     os.mkfifo(fifo)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import sys
 from typing import Any, Optional
 
 from .. import _native, colours, solids
-from ..console import DONE, FINDINGS, check_outputs, say
+from ..console import DONE, FINDINGS, check_outputs, say, tell
 from ..parts import PLANE_HELP, parse_plane, pieces_of, thinnest
 from ..progress import Bar
 from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES, check_coloured, streams
@@ -108,6 +107,8 @@ def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> 
     outputs = sorted(arguments.output, key=is_solid)  # solids last: they may be refused
     parts = parts_of(mesh, arguments)
     if several:
+        if not parts:
+            raise ValueError(f"{arguments.input}: nothing is left of it, so there is no piece to write")
         check_outputs([numbered(path, number) for path in outputs for number in range(1, len(parts) + 1)],
                       [arguments.input])
     for number, part in enumerate(parts, 1):
@@ -119,7 +120,7 @@ def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> 
                 continue
             part.write(numbered(path, number) if several else path, colors=tints,
                        progress=lambda fraction: bar("write", fraction))
-    written = [path for path in outputs if is_solid(path) and parts]
+    written = [path for path in outputs if is_solid(path)]
     return [in_a_row(path, len(parts)) for path in written] if several else written
 
 
@@ -174,17 +175,16 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.measure:
         say([json.dumps(measures(mesh, arguments.thickness), indent=2, allow_nan=False)])
     for files in of_facets:
-        print(f"swarf: note: {files}: facets, no faces as they were cut: {NO_PROGRAM}", file=sys.stderr)
+        tell(f"note: {files}: facets, no faces as they were cut: {NO_PROGRAM}")
     if made is None:
         return DONE
     if made.intersections_left:
-        print(f"swarf: warning: {made.intersections_left} pairs of triangles cut each other: the surface touches "
-              "itself there", file=sys.stderr)
+        tell(f"warning: {made.intersections_left} pairs of triangles cut each other: the surface touches itself there")
     thin = unseen_note(made)
     if thin:
-        print(f"swarf: note: {thin}", file=sys.stderr)
+        tell(f"note: {thin}")
     if not made.budget_met:
-        print(f"swarf: warning: {made.triangles} triangles are more than {arguments.budget}: an error of "
-              f"{error:g} mm leaves no fewer; allow a larger --error", file=sys.stderr)
+        tell(f"warning: {made.triangles} triangles are more than {arguments.budget}: an error of {error:g} mm leaves "
+             "no fewer; allow a larger --error")
         return FINDINGS
     return DONE

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 import time
 from typing import Any, Sequence
 
 from .. import accept, document, inputs, loads, pdf, report
-from ..console import DONE, FINDINGS, check_outputs, one_line, say
+from ..console import DONE, FINDINGS, check_outputs, one_line, say, tell
 from ..files import write_text
 from ..job import Job, number_of
 from ..progress import Bar
@@ -129,8 +128,8 @@ def run(arguments: argparse.Namespace) -> int:
     inputs.print_notes(job)
     used = [number_of(job, tool) for tool in job.program.tools]
     for tool in loads.unknown_chips(limits, used, job.teeth):
-        print(f"swarf: warning: the limit of chip thickness is not checked for tool {tool}: nothing tells its teeth, "
-              f"as --tool {tool}=...,teeth=2 does", file=sys.stderr)
+        tell(f"warning: the limit of chip thickness is not checked for tool {tool}: nothing tells its teeth, as "
+             f"--tool {tool}=...,teeth=2 does")
     inputs.print_findings([finding_line(finding) for finding in done.findings])
     say([f"{arguments.input}: {'passed' if done.passed else 'FAILED'}, tolerance +{done.tolerance[0]:g} "
          f"-{done.tolerance[1]:g} mm, voxel {done.result.stock.voxel:g} mm"])
