@@ -238,12 +238,13 @@ static inline contour_block *swarf_contour_block_below(const contour *work, cons
     for (int k = 0; k < 3; k++) corner[k] = block->ijk[k] - (below >> (2 - k) & 1) * SWARF_LEAF_DIM;
     return swarf_contour_block_at(work, corner);
 }
-/** The block that holds a voxel, most often `near`. */
+/** The block that holds a voxel, at[] from the corner of `near`, which most often it is. */
 static inline const contour_block *swarf_contour_block_near(const contour *work, const contour_block *near,
-                                                            const int32_t ijk[3])
+                                                            const int at[3])
 {
-    const int32_t away = (ijk[0] ^ near->ijk[0]) | (ijk[1] ^ near->ijk[1]) | (ijk[2] ^ near->ijk[2]);
-    return away & ~7 ? swarf_contour_block_at(work, ijk) : near;
+    if (!((at[0] | at[1] | at[2]) & ~7)) return near;
+    const int32_t voxel[3] = {near->ijk[0] + at[0], near->ijk[1] + at[1], near->ijk[2] + at[2]};
+    return swarf_contour_block_at(work, voxel);
 }
 /** How many bits of a mask are set below one: what __builtin_popcountll() is a call for where the processor need not
  *  have it. */
@@ -255,16 +256,16 @@ static inline unsigned swarf_contour_below(uint64_t mask, int bit)
     x = (x + (x >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
     return (unsigned)(x * UINT64_C(0x0101010101010101) >> 56);
 }
-/** The crossing of an edge, most often one of the block `near`; NULL where there is none. */
+/** The crossing of the edge from a voxel, at[] from the corner of `near`; NULL where there is none. */
 static inline const contour_crossing *swarf_contour_crossing(const contour *work, const contour_block *near,
-                                                             const int32_t voxel[3], int axis)
+                                                             const int at[3], int axis)
 {
-    const contour_block *block = swarf_contour_block_near(work, near, voxel);
-    const int bit = (voxel[1] & 7) * 8 + (voxel[2] & 7);
+    const contour_block *block = swarf_contour_block_near(work, near, at);
+    const int x = at[0] & 7, bit = (at[1] & 7) * 8 + (at[2] & 7);
     if (!block) return NULL;
-    const uint64_t word = block->edge_mask[axis][voxel[0] & 7];
+    const uint64_t word = block->edge_mask[axis][x];
     if (!(word >> bit & 1)) return NULL;
-    return block->crossings + block->edge_rank[axis][voxel[0] & 7] + swarf_contour_below(word, bit);
+    return block->crossings + block->edge_rank[axis][x] + swarf_contour_below(word, bit);
 }
 /** What the exact surface can be in the eight parts of a block, and in their own eight parts, collected for all and
  *  narrowed when first asked for: the smaller the box, the fewer moves a point has to look at. */

@@ -269,22 +269,30 @@ static swarf_status cross_edges(const contour *work, contour_block *block, const
     return SWARF_OK;
 }
 
-/* Material in voxels of the block whose centres are outside, as all about them are: as much of each as in a voxel
- * beside a face at that distance. In voxels. */
-static float find_unseen(const float values[SWARF_HALO * SWARF_HALO * SWARF_HALO], double voxel)
+/* Rows of a block and those about it. */
+enum { ROWS = 10 };
+
+/* Signs of the voxels of a block and those about them, [x][y], bit z set: material. */
+static void find_signs(const float values[SWARF_HALO * SWARF_HALO * SWARF_HALO], unsigned inside[ROWS][ROWS])
 {
-    enum { ROWS = 10 };      /* one about the block */
-    unsigned about[ROWS][8]; /* with those beside them along y and z */
-    for (int x = 0; x < ROWS; x++) {
-        unsigned inside[ROWS];
+    for (int x = 0; x < ROWS; x++)
         for (int y = 0; y < ROWS; y++) {
             const float *row = values + (x * SWARF_HALO + y) * SWARF_HALO;
-            unsigned signs = 0;
-            for (int z = 0; z < ROWS; z++) signs |= (unsigned)(row[z] < 0) << z;
-            inside[y] = signs | signs << 1 | signs >> 1;
+            inside[x][y] = swarf_row_below(row, 0) | (unsigned)(row[8] < 0) << 8 | (unsigned)(row[9] < 0) << 9;
         }
-        for (int y = 0; y < 8; y++) about[x][y] = inside[y] | inside[y + 1] | inside[y + 2];
-    }
+}
+
+/* Material in voxels of the block whose centres are outside, as all about them are: as much of each as in a voxel
+ * beside a face at that distance. In voxels. */
+static float find_unseen(const float values[SWARF_HALO * SWARF_HALO * SWARF_HALO], unsigned inside[ROWS][ROWS],
+                         double voxel)
+{
+    unsigned about[ROWS][8]; /* with those beside them along y and z */
+    for (int x = 0; x < ROWS; x++)
+        for (int y = 0; y < 8; y++) {
+            const unsigned rows = inside[x][y] | inside[x][y + 1] | inside[x][y + 2];
+            about[x][y] = rows | rows << 1 | rows >> 1;
+        }
     const float reach = (float)(0.5 * voxel), scale = (float)(1 / voxel);
     float sum = 0;
     for (int x = 0; x < 8; x++)
@@ -301,15 +309,12 @@ swarf_status swarf_contour_cross(contour *work, contour_block *block)
 {
     float values[SWARF_HALO * SWARF_HALO * SWARF_HALO];
     swarf_contour_fetch(work, block->ijk, values);
+    unsigned signs[ROWS][ROWS];
+    find_signs(values, signs);
+    block->unseen = find_unseen(values, signs, work->layout->voxel);
     uint16_t(*inside)[9] = block->inside;
     for (int x = 0; x < 9; x++)
-        for (int y = 0; y < 9; y++) {
-            const float *row = values + ((x + 1) * SWARF_HALO + y + 1) * SWARF_HALO + 1;
-            unsigned signs = 0;
-            for (int z = 0; z < 9; z++) signs |= (unsigned)(row[z] < 0) << z;
-            inside[x][y] = (uint16_t)signs;
-        }
-    block->unseen = find_unseen(values, work->layout->voxel);
+        for (int y = 0; y < 9; y++) inside[x][y] = (uint16_t)(signs[x + 1][y + 1] >> 1);
     uint32_t count = 0;
     for (int axis = 0; axis < 3; axis++)
         for (int x = 0; x < 8; x++) {

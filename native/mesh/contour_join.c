@@ -6,11 +6,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* In voxels: triangles less high than this are avoided. */
 static const double least_height = 1e-3;
 
-/* Corner of a quadrilateral: the vertex of the cell `back` of the edge's voxel. */
+/* Corner of a quadrilateral: the vertex of one of the four cells round its edge. */
 typedef struct corner {
     double at[3]; /* in voxels from the edge's voxel, set by measure_corners() */
     const float *xyz;
@@ -18,25 +19,23 @@ typedef struct corner {
     int calm, tiled;
 } corner;
 
-static int find_corner(const contour *work, const contour_block *near, const int32_t voxel[3], int axis,
-                       const int back[2], corner *out)
+/* Of the cell whose edge of that number starts at a voxel, at[] from the corner of `near`. */
+static int find_corner(const contour *work, const contour_block *near, const int at[3], int edge, corner *out)
 {
-    int32_t cell[3] = {voxel[0], voxel[1], voxel[2]};
-    cell[(axis + 1) % 3] -= back[0];
-    cell[(axis + 2) % 3] -= back[1];
+    const int *offset = swarf_contour_edge_offset[edge];
+    const int cell[3] = {at[0] - offset[0], at[1] - offset[1], at[2] - offset[2]};
     const contour_block *block = swarf_contour_block_near(work, near, cell);
     const int x = cell[0] & 7, bit = (cell[1] & 7) * 8 + (cell[2] & 7);
     if (!block || !(block->cell_mask[x] >> bit & 1)) return 0;
     const contour_cell *found = block->cells + block->cell_rank[x] + swarf_contour_below(block->cell_mask[x], bit);
     const contour_case *joined = &work->table.entry[found->config][found->flip];
-    uint32_t local = found->first + joined->of_edge[axis * 4 + back[0] * 2 + back[1]], left = local;
+    uint32_t local = found->first + joined->of_edge[edge], left = local;
     out->tiled = block->tile && block->tile[local] & SWARF_TILED;
     if (block->tile) {
         left = block->tile[local] & ~SWARF_TILED;
         local = block->left[left];
     }
-    uint32_t below = 0;
-    for (int k = 0; k < 3; k++) below = below << 1 | (uint32_t)((cell[k] ^ near->ijk[k]) / SWARF_LEAF_DIM & 1);
+    const uint32_t below = (uint32_t)(cell[0] < 0) << 2 | (uint32_t)(cell[1] < 0) << 1 | (uint32_t)(cell[2] < 0);
     out->number = below << SWARF_BELOW_SHIFT | left;
     out->calm = (int)(block->calm_mask[x] >> bit & 1);
     out->xyz = block->vertices[local].xyz;
@@ -88,12 +87,13 @@ static void put_facet(swarf_facet *facet, const contour_crossing *crossing, int 
     facet->beyond = facet->before = 0;
 }
 
-/* Vertices of the four cells round an edge, counter-clockwise seen against the axis; 0 when there are fewer. */
-static int find_corners(const contour *work, const contour_block *near, const int32_t voxel[3], int axis, corner q[4])
+/* Vertices of the four cells round the edge from a voxel, at[] from the corner of `near`, counter-clockwise seen
+ * against the axis; 0 when there are fewer. */
+static int find_corners(const contour *work, const contour_block *near, const int at[3], int axis, corner q[4])
 {
-    static const int back[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    static const int round[4] = {0, 2, 3, 1};
     int found = 0;
-    for (int k = 0; k < 4; k++) found += find_corner(work, near, voxel, axis, back[k], &q[k]);
+    for (int k = 0; k < 4; k++) found += find_corner(work, near, at, axis * 4 + round[k], &q[k]);
     return found == 4;
 }
 
@@ -162,12 +162,13 @@ static int find_same(const corner q[4])
 }
 
 /* Whether the quadrilateral of an edge is turned over, whichever diagonal cuts it. */
-static int is_folded(const contour *work, const contour_block *near, const int32_t voxel[3], int axis)
+static int is_folded(const contour *work, const contour_block *near, const int at[3], int axis)
 {
     corner q[4];
     double normal[3];
-    const contour_crossing *crossing = swarf_contour_crossing(work, near, voxel, axis);
-    if (!crossing || !find_corners(work, near, voxel, axis, q)) return 0;
+    const contour_crossing *crossing = swarf_contour_crossing(work, near, at, axis);
+    if (!crossing || !find_corners(work, near, at, axis, q)) return 0;
+    const int32_t voxel[3] = {near->ijk[0] + at[0], near->ijk[1] + at[1], near->ijk[2] + at[2]};
     measure_corners(work, voxel, q);
     const double along = crossing->normal[axis] < 0 ? -1 : 1;
     for (int k = 0; k < 3; k++) normal[k] = along * (double)crossing->normal[k];
@@ -181,10 +182,9 @@ swarf_status swarf_contour_unfold(contour *work, contour_block *block)
             const int bit = __builtin_ctzll(word);
             int folded = 0;
             for (int edge = 0; edge < 12 && !folded; edge++) {
-                const int axis = edge / 4;
-                int32_t voxel[3] = {block->ijk[0] + x, block->ijk[1] + (bit >> 3), block->ijk[2] + (bit & 7)};
-                for (int k = 0; k < 3; k++) voxel[k] += swarf_contour_edge_offset[edge][k];
-                folded = is_folded(work, block, voxel, axis);
+                const int *offset = swarf_contour_edge_offset[edge];
+                const int at[3] = {x + offset[0], (bit >> 3) + offset[1], (bit & 7) + offset[2]};
+                folded = is_folded(work, block, at, edge / 4);
             }
             if (folded) block->own_mask[x] |= word & -word;
             block->changed |= folded;
@@ -196,6 +196,7 @@ swarf_status swarf_contour_unfold(contour *work, contour_block *block)
 typedef struct joint {
     const contour_crossing *crossing;
     int32_t voxel[3];
+    int at[3]; /* the same from the corner of the block */
     int axis, outwards;
     float error;
     corner q[4];
@@ -237,7 +238,7 @@ static void add_four(const contour *work, contour_block *block, const joint *j)
  * found open. */
 static void join_crossing(const contour *work, contour_block *block, joint *j)
 {
-    if (!find_corners(work, block, j->voxel, j->axis, j->q)) return;
+    if (!find_corners(work, block, j->at, j->axis, j->q)) return;
     block->full_count += 2;
     for (int k = 0; k < 4; k++)
         if (j->q[k].tiled) j->error = (float)(SWARF_TILE_ERROR * work->error_mm);
@@ -280,6 +281,7 @@ swarf_status swarf_contour_join(contour *work, contour_block *block)
         for (int x = 0; x < 8; x++)
             for (uint64_t word = block->edge_mask[j.axis][x]; word; word &= word - 1, j.crossing++) {
                 const int bit = __builtin_ctzll(word), at[3] = {x, bit >> 3, bit & 7};
+                memcpy(j.at, at, sizeof at);
                 for (int k = 0; k < 3; k++) j.voxel[k] = block->ijk[k] + at[k];
                 j.outwards = block->inside[x][at[1]] >> at[2] & 1;
                 j.error = 0;

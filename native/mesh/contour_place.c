@@ -26,8 +26,8 @@ static const float *values_at(placing *p, const int at[3])
 static int config_at(const contour_block *block, const int at[3])
 {
     int config = 0;
-    for (int c = 0; c < 8; c++)
-        config |= (block->inside[at[0] + (c >> 2)][at[1] + (c >> 1 & 1)] >> (at[2] + (c & 1)) & 1) << c;
+    for (int row = 0; row < 4; row++)
+        config |= (block->inside[at[0] + (row >> 1)][at[1] + (row & 1)] >> at[2] & 3) << (2 * row);
     return config;
 }
 
@@ -51,8 +51,7 @@ static void gather(const placing *p, const int at[3], const contour_case *joined
     for (unsigned left = joined->edges[cycle]; left; left &= left - 1) {
         const int edge = __builtin_ctz(left), axis = edge / 4;
         const int *offset = swarf_contour_edge_offset[edge];
-        int32_t voxel[3];
-        for (int k = 0; k < 3; k++) voxel[k] = p->block->ijk[k] + at[k] + offset[k];
+        const int voxel[3] = {at[0] + offset[0], at[1] + offset[1], at[2] + offset[2]};
         const contour_crossing *crossing = swarf_contour_crossing(p->work, p->block, voxel, axis);
         if (!crossing) continue; /* beyond the layout: the mesh will be found open */
         const int i = out->count++;
@@ -92,18 +91,22 @@ static void make_exact(contour_polygon *polygon, const swarf_surface_near *near,
     }
 }
 
-/* Leave out the crossings that only the field knows. */
-static void keep_exact(contour_polygon *polygon)
+/* Leave out the crossings that only the field knows; 0, and all stay, where there are no others. */
+static int keep_exact(contour_polygon *polygon)
 {
     int kept = 0;
     for (int i = 0; i < polygon->count; i++) {
         if (polygon->move[i] == SWARF_BY_FIELD) continue;
-        memcpy(polygon->point[kept], polygon->point[i], sizeof polygon->point[i]);
-        memcpy(polygon->normal[kept], polygon->normal[i], sizeof polygon->normal[i]);
-        polygon->move[kept] = polygon->move[i];
-        polygon->piece[kept++] = polygon->piece[i];
+        if (kept < i) {
+            memcpy(polygon->point[kept], polygon->point[i], sizeof polygon->point[i]);
+            memcpy(polygon->normal[kept], polygon->normal[i], sizeof polygon->normal[i]);
+            polygon->move[kept] = polygon->move[i];
+            polygon->piece[kept] = polygon->piece[i];
+        }
+        kept++;
     }
-    polygon->count = kept;
+    if (kept) polygon->count = kept;
+    return kept > 0;
 }
 
 /* Place the vertex of a cycle by the field. */
@@ -192,15 +195,13 @@ static swarf_status place_vertex(placing *p, const int at[3], int config, contou
     if (near) {
         SWARF_TRY(swarf_contour_near_narrow(&p->near, at, &near));
         make_exact(polygon, near, config);
-        contour_polygon known = *polygon;
-        keep_exact(&known);
-        exact = known.count > 0;
+        exact = keep_exact(polygon);
         if (exact && calm)
-            swarf_contour_vertex_smooth(&known, near, out);
+            swarf_contour_vertex_smooth(polygon, near, out);
         else if (exact)
-            rank = swarf_contour_vertex_exact(&known, near, out);
-        if (exact && !calm && !(block->own_mask[at[0]] >> bit & 1) && rank == 1 && has_faces(&known)) {
-            SWARF_TRY(place_beside(p, at, &known, out, &rank));
+            rank = swarf_contour_vertex_exact(polygon, near, out);
+        if (exact && !calm && !(block->own_mask[at[0]] >> bit & 1) && rank == 1 && has_faces(polygon)) {
+            SWARF_TRY(place_beside(p, at, polygon, out, &rank));
             if (rank > 1) block->beside_mask[at[0]] |= UINT64_C(1) << bit;
         }
     }

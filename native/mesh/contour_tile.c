@@ -74,13 +74,12 @@ static int is_simple(const contour *work, const contour_block *block, const int 
 /* The plane of the surface in a cell with one vertex. */
 static void plane_of(const tiling *t, int x, int bit, uint32_t vertex, contour_plane *out)
 {
-    const int32_t *corner = t->block->ijk;
     for (int k = 0; k < 3; k++) out->point[k] = (double)t->block->vertices[vertex].xyz[k];
     for (int edge = 0; edge < 12; edge++) {
         const int axis = edge / 4;
-        int32_t voxel[3] = {corner[0] + x, corner[1] + (bit >> 3), corner[2] + (bit & 7)};
-        for (int k = 0; k < 3; k++) voxel[k] += swarf_contour_edge_offset[edge][k];
-        const contour_crossing *crossing = swarf_contour_crossing(t->work, t->block, voxel, axis);
+        const int *offset = swarf_contour_edge_offset[edge];
+        const int at[3] = {x + offset[0], (bit >> 3) + offset[1], (bit & 7) + offset[2]};
+        const contour_crossing *crossing = swarf_contour_crossing(t->work, t->block, at, axis);
         if (!crossing) continue;
         for (int k = 0; k < 3; k++) out->normal[k] = (double)crossing->normal[k];
         return;

@@ -45,6 +45,20 @@ static inline void swarf_node_corner(const swarf_tree_layout *layout, size_t nod
     corner[2] = (int32_t)(node % (size_t)layout->count[2]) * SWARF_NODE_DIM;
 }
 
+/** Bits of the eight values of a row (along z) that are less than a limit. */
+static inline unsigned swarf_row_below(const float row[8], float limit)
+{
+#if defined(__SSE2__) /* the compiler makes a bit at a time of the loop */
+    const __m128 most = _mm_set1_ps(limit);
+    return (unsigned)_mm_movemask_ps(_mm_cmplt_ps(_mm_loadu_ps(row), most)) |
+           (unsigned)_mm_movemask_ps(_mm_cmplt_ps(_mm_loadu_ps(row + 4), most)) << 4;
+#else
+    unsigned bits = 0;
+    for (int z = 0; z < 8; z++) bits |= (unsigned)(row[z] < limit) << z;
+    return bits;
+#endif
+}
+
 /** Bits of the eight values of a row (along z) that are inside the band. */
 static inline unsigned swarf_row_mask(const float row[8], float background)
 {
