@@ -17,7 +17,8 @@ from .stocks import DEFAULT_RESOLUTION, make_first, make_stock, stock_box, voxel
 
 __all__ = [
     "COLOURED_SUFFIXES", "DEFAULT_RESOLUTION", "MESH_ERROR_VOXELS", "MESH_SUFFIXES", "OUTPUT_SUFFIXES", "Progress",
-    "Result", "STOCK_SUFFIXES", "check_coloured", "make_stock", "output_suffix", "simulate", "stock_box", "voxel_of",
+    "Result", "STOCK_SUFFIXES", "check_coloured", "check_mesh", "make_stock", "mesh_error",
+    "output_suffix", "simulate", "stock_box", "voxel_of",
 ]
 
 #: What an output file can be, by its suffix.
@@ -76,6 +77,8 @@ def simulate(
     tolerance: float = 0.05,
     allowance: float = 0.0,
     drop_loose: bool = False,
+    error: Optional[float] = None,
+    budget: int = 0,
     fine: bool = False,
     keep_volume: bool = False,
     progress: Optional[Progress] = None,
@@ -85,14 +88,15 @@ def simulate(
     Where the stock is what another job leaves, that is played first. ``voxel`` in mm, or ``resolution`` voxels along
     the stock's longest edge (512 unless told); ``batch`` as in Stock.simulate(). The stock is compared with the design
     when the job has one. A mesh is made when ``mesh`` is true or an output needs it; where exactly one .stl file does,
-    with no ``colour`` and nothing dropped, it is streamed there (Mesh.stream()): then the result has its ``contour``,
-    but no mesh. ``outputs`` are .stl, .ply, .obj, .3mf, .glb, .vdb and .step (.stp) files, ``picture`` a .png file; a
-    .step file has faces as they were cut where that is possible, else facets, and ``solids`` of the result tells why.
-    ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by, deviations green within
-    ``tolerance`` of the design and ``allowance``, which is meant to be left on it (mm). Pieces that come loose are in
-    the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. ``fine``,
-    ``keep_volume``: as in Mesh.from_stock(), of mesh files and the result's mesh. Seconds of each stage are in the
-    result. Raises what the stages raise; nothing is written before the cutting is done.
+    with no ``colour``, no ``budget`` and nothing dropped, it is streamed there (Mesh.stream()): then the result has its
+    ``contour``, but no mesh. ``outputs`` are .stl, .ply, .obj, .3mf, .glb, .vdb and .step (.stp) files, ``picture`` a
+    .png file; a .step file has faces as they were cut where that is possible, else facets, and ``solids`` of the result
+    tells why. ``colour`` (operation, deviation, thickness) is what the mesh files are coloured by, deviations green
+    within ``tolerance`` of the design and ``allowance``, which is meant to be left on it (mm). Pieces that come loose
+    are in the result, with the moves that free them; ``drop_loose`` leaves them out of all that follows. ``error`` (mm;
+    None: 0.1 voxels), ``budget``, ``fine``, ``keep_volume``: as in Mesh.from_stock(), of mesh files and the result's
+    mesh, the error of facets in .step files too; whether a budget was met is in the result's ``contour``. Seconds of
+    each stage are in the result. Raises what the stages raise; nothing is written before the cutting is done.
     """
     if len(job.program) == 0:
         raise ValueError(f"{job.name}: the program has no moves: there is nothing to simulate")
@@ -104,6 +108,7 @@ def simulate(
         Camera.view(view, None, picture_size[0] / picture_size[1])  # ValueError, before the long work
     if colour is not None:
         colours.check(colour, job)
+    check_mesh(error, budget)
     meshed = mesh or not suffixes.isdisjoint(MESH_SUFFIXES)
     stages = Stages(progress)
     first = stages.run("stock", lambda report: make_first(
@@ -118,11 +123,11 @@ def simulate(
                     resampled_voxels=first.resampled_voxels)
     result.loose = stages.run("loose", lambda report: loose.find(
         job, stock, lambda part: make_stock(job.stock, voxel=stock.voxel, progress=part), report))
-    if meshed and (mesh or drop_loose or colour or not streams(
+    most = mesh_error(error, stock.voxel)
+    how: dict[str, Any] = {"surface": exact, "fine": fine, "keep_volume": keep_volume}
+    if meshed and (mesh or drop_loose or colour or budget or not streams(
             [path for path in outputs if output_suffix(path) in MESH_SUFFIXES])):
-        whole = stages.run("mesh", lambda report: Mesh.from_stock(
-            stock, MESH_ERROR_VOXELS * stock.voxel, surface=exact, fine=fine, keep_volume=keep_volume,
-            progress=report))
+        whole = stages.run("mesh", lambda report: Mesh.from_stock(stock, most, budget=budget, progress=report, **how))
         result.mesh, result.contour = whole, whole.contour
     if drop_loose and (result.loose.pieces or result.loose.crumbs):
         _drop_loose(result, stages)
@@ -133,7 +138,11 @@ def simulate(
         tints = _tints(colour, result.mesh, result, tolerance, allowance, stages)
     for path in outputs:
         if output_suffix(path) in MESH_SUFFIXES:
-            _write_mesh(path, result, tints, fine, keep_volume, stages)
+            if result.mesh is None:
+                result.contour = stages.run("mesh", lambda report: Mesh.stream(
+                    result.stock, path, most, progress=report, **how))
+            else:
+                _write_mesh(path, result.mesh, tints, stages)
         elif output_suffix(path) in STOCK_SUFFIXES:
             stages.run("write", lambda report: result.stock.write(path, progress=report))
     if exact is not None:
@@ -141,18 +150,19 @@ def simulate(
             _draw(picture, result.stock, exact, view, picture_size, stages)
         for path in outputs:  # these last: they may be refused
             if output_suffix(path) in solids.SUFFIXES:
-                result.solids.append(_write_solid(path, stock, exact, drop_loose, stages))
+                result.solids.append(_write_solid(path, stock, exact, most, drop_loose, stages))
     stages.end()
     return result
 
 
 def _drop_loose(result: Result, stages: Stages) -> None:
-    """Leave the largest piece of a result alone."""
-    stock, whole = result.stock, result.mesh
-    kept = largest(stages.run("mesh", lambda report: Mesh.from_stock(stock, progress=report))
-                   if whole is None else whole)
+    """Leave the largest piece of a result alone. Voxels do not come from a mesh with a greater error than usual."""
+    stock, made, whole = result.stock, result.contour, result.mesh
+    result.mesh = None if whole is None else largest(whole)
+    near = made is not None and made.error_mm <= MESH_ERROR_VOXELS * stock.voxel * (1 + 1e-6)
+    kept = result.mesh if result.mesh is not None and near else largest(
+        stages.run("mesh", lambda report: Mesh.from_stock(stock, progress=report)))
     result.stock = stages.run("mesh", lambda report: Stock.from_mesh(kept, stock.voxel, progress=report))
-    result.mesh = None if whole is None else kept
     result.dropped_mm3 = result.simulation.volume_final - result.stock.volume()
 
 
@@ -166,16 +176,7 @@ def _tints(colour: str, mesh: Mesh, result: Result, tolerance: float, allowance:
         colour, mesh, result.surface, result.job, tolerance, progress=report, allowance=allowance))
 
 
-def _write_mesh(path: str, result: Result, tints: Optional[list[colours.RGB]], fine: bool, keep_volume: bool,
-                stages: Stages) -> None:
-    """The result's mesh to a file; streamed there where it has none."""
-    if result.mesh is None:
-        stock = result.stock
-        result.contour = stages.run("mesh", lambda report: Mesh.stream(
-            stock, path, MESH_ERROR_VOXELS * stock.voxel, surface=result.surface, fine=fine,
-            keep_volume=keep_volume, progress=report))
-        return
-    mesh = result.mesh
+def _write_mesh(path: str, mesh: Mesh, tints: Optional[list[colours.RGB]], stages: Stages) -> None:
     stages.run("write", lambda report: mesh.write(path, colors=tints, progress=report))
 
 
@@ -186,14 +187,30 @@ def _draw(path: str, stock: Stock, surface: Surface, view: View, size: tuple[int
     stages.run("picture", lambda report: scene.render(camera, *size, progress=report).write(path))
 
 
-def _write_solid(path: str, cut: Stock, surface: Surface, only_largest: bool, stages: Stages) -> solids.Written:
+def _write_solid(path: str, cut: Stock, surface: Surface, error: float, only_largest: bool,
+                 stages: Stages) -> solids.Written:
     return stages.run("write", lambda report: solids.write(
-        cut, surface, path, error=MESH_ERROR_VOXELS * cut.voxel, only_largest=only_largest, progress=report))
+        cut, surface, path, error=error, only_largest=only_largest, progress=report))
 
 
 def streams(paths: Sequence[str]) -> bool:
     """Whether a mesh for these files alone can be written without being in memory as a whole."""
     return len(paths) == 1 and os.path.splitext(os.fspath(paths[0]))[1].lower() == ".stl"
+
+
+def mesh_error(asked: Optional[float], voxel: float) -> float:
+    """What a mesh may be off, mm, where this is asked for (None: nothing)."""
+    return MESH_ERROR_VOXELS * voxel if asked is None else asked
+
+
+def check_mesh(error: Optional[float], budget: int) -> None:
+    """ValueError unless a mesh can be asked for with this error (mm; None: not given) and budget of triangles."""
+    if error is not None and not 0 <= error <= 1e6:
+        raise ValueError(f"error {error:g}: not a length in mm (0 to 1e6)")
+    if not 0 <= budget < 1 << 32:
+        raise ValueError(f"budget {budget}: not a number of triangles")
+    if budget and error == 0:
+        raise ValueError(f"a budget of {budget} triangles needs an error (mm) that may be spent on it")
 
 
 def check_coloured(paths: Sequence[str], option: str) -> None:

@@ -504,3 +504,97 @@ def test_volume_is_kept_where_it_is_asked_for(swarf_run, tmp_path):
     assert off[".stl", True] < 0.7 * off[".stl", False] and off[".obj", True] < 0.7 * off[".obj", False], off
     status, _, err = swarf_run("mesh", "part.ply", "--keep-volume", "--output", "again.ply")
     assert status == 2 and "--keep-volume are for stocks" in err
+
+
+@pytest.fixture
+def groove(tmp_path):
+    """Words that cut a ball's groove through a block, 30 mm long."""
+    (tmp_path / "groove.nc").write_text("G21 G90 T1 M6\nG0 X-9 Y10 Z-5\nG1 X39 F100\nM2\n")
+    return ("simulate", "groove.nc", "--stock", "box:0,0,-8,30,20,0", "--tool", "1=ball:d=10,l=20", "--voxel", "0.5")
+
+
+def groove_distance(point):
+    """How far a point is from the surface that the groove leaves, mm."""
+    x, y, z = point
+    out = math.hypot(y - 10, z)
+    return min(abs(x), abs(x - 30), abs(y), abs(y - 20), abs(z), abs(z + 8), abs(out - 5))
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".ply"])  # streamed, and made as a whole
+def test_a_mesh_is_within_the_error_that_is_asked_for(swarf_run, groove, tmp_path, suffix):
+    count = {}
+    for error in (0.01, 0.3):
+        status, _, err = swarf_run(*groove, "--error", error, "--output", "part" + suffix)
+        assert (status, err) == (0, "")
+        mesh = swarf.Mesh.read(tmp_path / ("part" + suffix))
+        points, count[error] = mesh.vertices.tolist(), mesh.triangle_count
+        assert mesh.closed
+        for corners in mesh.triangles.tolist():
+            middle = [sum(points[i][axis] for i in corners) / 3 for axis in range(3)]
+            assert groove_distance(middle) <= error + 0.01 * 0.5
+    assert count[0.3] < 0.7 * count[0.01]
+
+
+def test_a_budget_of_triangles_is_met_or_what_is_possible_is_said(swarf_run, groove, tmp_path):
+    words = (*groove, "--error", "0.5", "--output", "part.stl")
+    status, _, err = swarf_run(*words)
+    assert (status, err) == (0, "")
+    fewest = swarf.Mesh.read(tmp_path / "part.stl").triangle_count
+    status, _, err = swarf_run(*words, "--budget", 2 * fewest, "--report", "r.json")
+    assert (status, err) == (0, "")
+    assert fewest < swarf.Mesh.read(tmp_path / "part.stl").triangle_count <= 2 * fewest
+    assert 0 < json.loads((tmp_path / "r.json").read_text())["mesh"]["error_mm"] < 0.5
+    for report in ((), ("--report", "r.json")):  # with one .stl file, and a mesh for the report as well
+        status, _, err = swarf_run(*words, "--budget", "9", *report)
+        assert status == 1 and err.count("\n") == 1
+        left = swarf.Mesh.read(tmp_path / "part.stl").triangle_count
+        assert f"warning: {left} triangles are more than 9: an error of 0.5 mm leaves no fewer; allow" in err
+
+
+@pytest.mark.parametrize("words, says", [
+    (("--error", "-1"), "error -1: not a length"),
+    (("--error", "nan"), "error nan: not a length"),
+    (("--error", "1e100"), "error 1e+100: not a length"),
+    (("--error", "fine"), "fine"),
+    (("--budget", "-1"), "budget -1: not a number of triangles"),
+    (("--budget", str(1 << 32)), "not a number of triangles"),
+    (("--budget", "many"), "many"),
+    (("--budget", "9", "--error", "0"), "a budget of 9 triangles needs an error"),
+])
+def test_errors_and_budgets_that_cannot_be(refused, program, words, says):
+    refused(program, "--stock", STOCK, "--tool", TOOL, "--output", "s.stl", *words, says=[says])
+
+
+def test_a_stock_without_its_loose_pieces_does_not_have_the_error_of_the_mesh(swarf_run, groove, tmp_path):
+    (tmp_path / "groove.nc").write_text("G21 G90 T1 M6\nG0 X-9 Y10 Z-5\nG1 X39 F100\nG0 Z9\n"
+                                        "T2 M6\nG0 X24 Y-5\nG0 Z-9\nG1 Y25 F100\nM2\n")
+    kept = 22 * (20 * 8 - math.pi * 5 ** 2 / 2)
+    for error in (0.02, 0.9):
+        status, _, err = swarf_run(*groove, "--tool", "2=flat:d=4,l=20", "--error", error, "--loose", "drop",
+                                   "--output", "part.vdb", "--output", "part.ply")
+        assert status == 0, err
+        assert swarf.Stock.read(tmp_path / "part.vdb").volume() == pytest.approx(kept, rel=3e-3)
+    assert swarf.Mesh.read(tmp_path / "part.ply").volume != pytest.approx(kept, rel=5e-3)
+
+
+def test_a_stock_of_which_nothing_is_left_is_told(swarf_run, tmp_path):
+    (tmp_path / "all.nc").write_text("G21 G90 T1 M6\nG0 X-9 Y2 Z-1\nG1 X9 F100\nM2\n")
+    words = ("simulate", "all.nc", "--stock", "box:0,0,0,4,4,2", "--tool", "1=flat:d=12,l=9", "--voxel", "0.5")
+    status, _, err = swarf_run(*words, "--output", "z.vdb")
+    assert (status, err) == (0, "")
+    for outputs in (("z.stl",), ("z.stl", "z.ply")):
+        told = f"swarf: warning: nothing is left of the stock: no triangles in {', '.join(outputs)}\n"
+        chosen = [word for path in outputs for word in ("--output", path)]
+        for command in (words, ("mesh", "z.vdb")):
+            status, _, err = swarf_run(*command, *chosen)
+            assert (status, err) == (0, told)
+            assert swarf.Mesh.read(tmp_path / "z.stl").triangle_count == 0
+    assert swarf_run("mesh", "z.vdb", "--measure")[2] == "swarf: warning: nothing is left of the stock\n"
+
+
+def test_a_stock_of_which_only_a_thin_floor_is_left_is_told(swarf_run, tmp_path):
+    (tmp_path / "all.nc").write_text("G21 G90 T1 M6\nG0 X-9 Y2 Z0.2\nG1 X13 F100\nM2\n")
+    status, _, err = swarf_run("simulate", "all.nc", "--stock", "box:0,0,0,4,4,2", "--tool", "1=flat:d=12,l=9",
+                               "--voxel", "0.5", "--output", "z.stl")
+    assert status == 0
+    assert "warning: what is left of the stock is thinner than a voxel: no triangles in z.stl\n" in err

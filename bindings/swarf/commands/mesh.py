@@ -7,12 +7,11 @@ import json
 import os
 from typing import Any, Optional
 
-from .. import _native, colours, solids
+from .. import _native, colours, meshing, solids
 from ..console import DONE, FINDINGS, check_outputs, say, tell
 from ..parts import PLANE_HELP, parse_plane, pieces_of, thinnest
 from ..progress import Bar
-from ..simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES, check_coloured, streams
-from ..wording import unseen_note
+from ..simulate import MESH_SUFFIXES, check_coloured, check_mesh, mesh_error, streams
 
 
 def add(subparsers: Any) -> None:
@@ -24,12 +23,7 @@ def add(subparsers: Any) -> None:
         "budget is not met, 2 could not run. Lengths in mm.",
     )
     command.add_argument("input", metavar="INPUT", help="a .vdb file, or a mesh: .stl .ply .obj")
-    command.add_argument("--error", metavar="MM", type=float,
-                         help=f"leave vertices out up to this error (default: {MESH_ERROR_VOXELS:g} voxels; 0: none)")
-    command.add_argument("--budget", metavar="N", type=int, default=0,
-                         help="no more triangles than N, if the error allows")
-    command.add_argument("--keep-volume", action="store_true",
-                         help="shift vertices, by a fifth of the error at most, until the volume is that of the stock")
+    meshing.add_options(command)
     command.add_argument("--output", metavar="FILE", action="append", default=[],
                          help=f"write the mesh: {' '.join(MESH_SUFFIXES)}, or .step, of facets (repeatable); one that "
                          "does not fit into memory only to .stl")
@@ -87,7 +81,7 @@ def read(arguments: argparse.Namespace, bar: Bar) -> tuple[Any, float]:
                              "taken as it is")
         return _native.Mesh.read(arguments.input), 0.0
     stock = _native.Stock.read(arguments.input, progress=lambda fraction: bar("read", fraction))
-    return stock, MESH_ERROR_VOXELS * stock.voxel if arguments.error is None else arguments.error
+    return stock, mesh_error(arguments.error, stock.voxel)
 
 
 def is_streamed(arguments: argparse.Namespace) -> bool:
@@ -143,10 +137,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Mesh, write, measure."""
     if abs(arguments.threads) >= 1 << 31:
         raise ValueError(f"threads: {arguments.threads} is not in 0 .. 1024 (0: one per core)")
-    if arguments.error is not None and not 0 <= arguments.error <= 1e6:
-        raise ValueError(f"error {arguments.error:g}: not a length in mm (0 to 1e6)")
-    if not 0 <= arguments.budget < 1 << 32:
-        raise ValueError(f"budget {arguments.budget}: not a number of triangles")
+    check_mesh(arguments.error, arguments.budget)
     if not (arguments.output or arguments.measure):
         raise ValueError("nothing to do: give --output FILE, --measure or both")
     if (arguments.split or arguments.split_at) and not arguments.output:
@@ -178,13 +169,6 @@ def run(arguments: argparse.Namespace) -> int:
         tell(f"note: {files}: facets, no faces as they were cut: {NO_PROGRAM}")
     if made is None:
         return DONE
-    if made.intersections_left:
-        tell(f"warning: {made.intersections_left} pairs of triangles cut each other: the surface touches itself there")
-    thin = unseen_note(made)
-    if thin:
-        tell(f"note: {thin}")
-    if not made.budget_met:
-        tell(f"warning: {made.triangles} triangles are more than {arguments.budget}: an error of {error:g} mm leaves "
-             "no fewer; allow a larger --error")
-        return FINDINGS
-    return DONE
+    for line in meshing.notes(made, arguments.output, arguments.budget, error):
+        tell(line)
+    return DONE if made.budget_met else FINDINGS

@@ -8,14 +8,13 @@ import sys
 import time
 from typing import Any
 
-from .. import colours, inputs, report, timing
-from ..console import DONE, FINDINGS, check_outputs, one_line, say
+from .. import colours, inputs, meshing, report, timing
+from ..console import DONE, FINDINGS, check_outputs, one_line, say, tell
 from ..files import check_suffix
 from ..progress import Bar
-from ..simulate import check_coloured, output_suffix, simulate
+from ..simulate import MESH_SUFFIXES, check_coloured, check_mesh, mesh_error, output_suffix, simulate
 from ..stocks import RESAMPLED_FIELD
 from ..verify import check_tolerance, uncut_text
-from ..wording import unseen_note
 
 
 def add(subparsers: Any) -> None:
@@ -24,7 +23,7 @@ def add(subparsers: Any) -> None:
         "simulate",
         help="cut a stock with a program",
         description="Cut a stock with the program in INPUT, and what is left of it in the set-ups of --then. Exit "
-        "status: 0 done, 1 findings of class error, 2 could not run. Lengths in mm.",
+        "status: 0 done, 1 findings of class error or the budget is not met, 2 could not run. Lengths in mm.",
     )
     inputs.add_arguments(command)
     command.add_argument("--output", metavar="FILE", action="append", default=[],
@@ -37,12 +36,10 @@ def add(subparsers: Any) -> None:
                          "it")
     command.add_argument("--loose", choices=("keep", "drop"), default="keep",
                          help="pieces that have come loose: keep them, or leave them out (default: keep)")
+    meshing.add_options(command, "mesh files: ")
     command.add_argument("--fine", action="store_true",
                          help="mesh files: follow edges that are closer to each other than a voxel, as those of "
                          "threads; takes longer")
-    command.add_argument("--keep-volume", action="store_true",
-                         help="mesh files: shift vertices, by a fifth of the error at most, until the volume is that "
-                         "of the stock")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
     command.add_argument("--report", metavar="FILE.json", help="write a report")
     command.add_argument("--machine", metavar="FILE.json", help="speeds and accelerations of the machine, for its time")
@@ -60,6 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     outputs, sources = (*arguments.output, arguments.picture, arguments.report), inputs.files_read(arguments)
     check_outputs(outputs, (*sources, arguments.machine))
     check_tolerance(arguments.tolerance)
+    check_mesh(arguments.error, arguments.budget)
     if not math.isfinite(arguments.allowance):
         raise ValueError(f"allowance {arguments.allowance:g}: wanted a number")
     machine = None if arguments.machine is None else timing.read_machine(arguments.machine)
@@ -80,6 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
             tolerance=arguments.tolerance,
             allowance=arguments.allowance,
             drop_loose=arguments.loose == "drop",
+            error=arguments.error,
+            budget=arguments.budget,
             fine=arguments.fine,
             keep_volume=arguments.keep_volume,
             progress=bar,
@@ -92,12 +92,6 @@ def run(arguments: argparse.Namespace) -> int:
     if result.loose.crumbs:
         told.append(f"note: {result.loose.crumbs} crumbs of a few voxels are loose")
     told += [f"note: {solid.path}: {solid.note}" for solid in result.solids if solid.note]
-    cuts = getattr(result.contour, "intersections_left", 0)
-    if cuts:
-        told.append(f"warning: {cuts} pairs of triangles cut each other: the surface touches itself there")
-    thin = result.contour and unseen_note(result.contour)
-    if thin:
-        told.append(f"note: {thin}")
     if result.resampled_voxels:
         corners = ", at corners by up to 0.3" if result.resampled_voxels == RESAMPLED_FIELD else ""
         told.append(f"note: the stock was turned into new voxels, which are off by {result.resampled_voxels:g} voxels "
@@ -108,6 +102,13 @@ def run(arguments: argparse.Namespace) -> int:
         found += [f"{finding.severity}: {of}line {finding.line}: {one_line(uncut_text(finding, played))}"
                   for finding in simulation.findings]
     inputs.print_findings(found + told)
+    met = True
+    if result.contour is not None:
+        files = [path for path in arguments.output if output_suffix(path) in MESH_SUFFIXES]
+        for line in meshing.notes(result.contour, files, arguments.budget,
+                                  mesh_error(arguments.error, result.stock.voxel)):
+            tell(line)
+        met = result.contour.budget_met
     if sys.stdout.isatty():
         say([report.summary(made)])
-    return FINDINGS if result.failed else DONE
+    return FINDINGS if result.failed or not met else DONE
