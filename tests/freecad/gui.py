@@ -10,6 +10,8 @@ import FreeCADGui as Gui
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
+from PySide import QtGui  # noqa: E402
+
 from gui_support import OUT, QtWidgets, live, screenshot, start, wait_for  # noqa: E402
 
 
@@ -43,6 +45,40 @@ def cancel_at_last(opened):
     opened.reject()
     wait_for(lambda: not opened.working, "cancel")
     assert "ancelled" in opened.message.text() and not opened.closed, opened.message.text()
+
+
+def tinted(obj, name):
+    """Share of a picture of the object alone that has the colour of its operation: the stock's own is nearly grey."""
+    Gui.Selection.clearSelection()
+    others = [item for item in obj.Document.Objects if item is not obj and item.ViewObject.Visibility]
+    for other in others:
+        other.ViewObject.Visibility = False
+    obj.ViewObject.Visibility = True
+    path, view = os.path.join(OUT, name), Gui.ActiveDocument.ActiveView
+    view.viewIsometric()
+    view.fitAll()
+    view.saveImage(path, 400, 300, "White")
+    for other in others:
+        other.ViewObject.Visibility = True
+    image = QtGui.QImage(path)
+    pixels = [image.pixelColor(x, y) for x in range(400) for y in range(300)]
+    return sum(pixel.blue() > pixel.red() + 50 for pixel in pixels) / len(pixels)
+
+
+def check_colours(obj, picture):
+    """What an operation cut has its colour; who switches that off is left alone."""
+    assert tinted(obj, picture) > 0.03, "the operation's colour is not seen"
+    view = obj.ViewObject
+    view.Coloring = False
+    obj.FaceColours = colours = obj.FaceColours
+    assert tinted(obj, "colourless.png") == 0 and not view.Coloring, "coloured though the user does not want it"
+    view.Coloring = True
+    assert tinted(obj, picture) > 0.03
+    obj.FaceColours = []  # of a mesh that FreeCAD mended
+    assert tinted(obj, "colourless.png") == 0, "coloured by what is no more"
+    obj.FaceColours = colours
+    assert tinted(obj, picture) > 0.03
+    obj.Document.recompute()
 
 
 def check_export(obj):
@@ -172,6 +208,7 @@ def check():
     Gui.Selection.clearSelection()
     Gui.SendMsgToActiveView("ViewFit")
     screenshot("result.png")
+    check_colours(obj, "colours.png")
 
     job.Operations.Group[0].Path = samples.path_of("G0 X-5 Y10 Z-5", "G1 X45 F10")
     document.recompute()
@@ -183,6 +220,10 @@ def check():
     wait_for(lambda: obj.UpToDate, "update")
     no_panel()
     assert obj.VolumeRemoved.Value > 1000, obj.VolumeRemoved
+    for name, change in (("undone", document.undo), ("redone", document.redo)):
+        change()
+        assert tinted(obj, name + ".png") > 0.03, name
+    Gui.Selection.addSelection(document.Name, obj.Name)
 
     check_export(obj)
     check_next(document, obj)
@@ -200,6 +241,7 @@ def check():
     obj, = [item for item in document.Objects if simulation.is_simulation(item)]
     assert type(obj.ViewObject.Proxy).__name__ == "SimulationView" and obj.ViewObject.CreaseAngle == 25
     assert obj.UpToDate and obj.ViewObject.Proxy.getIcon().endswith("swarf.svg")
+    assert tinted(obj, "reopened.png") > 0.03, "no colours in a document that was opened"
 
 
 start(check)

@@ -123,11 +123,14 @@ class Simulation:
 
 
 def attach_view(obj):
-    """Give the object its view provider when there is a GUI and it has none."""
-    if FreeCAD.GuiUp and obj.ViewObject is not None and not getattr(obj.ViewObject, "Proxy", None):
-        from ..gui.view import SimulationView  # the GUI's packages do not exist without it
+    """Give the object its view provider when there is a GUI and it has none, and its colours, over which a document
+    that is opened puts ShapeColor."""
+    if FreeCAD.GuiUp and obj.ViewObject is not None:
+        from ..gui import view  # the GUI's packages do not exist without it
 
-        SimulationView(obj.ViewObject)
+        if not getattr(obj.ViewObject, "Proxy", None):
+            view.SimulationView(obj.ViewObject)
+        view.show_colours(obj.ViewObject)
 
 
 def refresh(obj):

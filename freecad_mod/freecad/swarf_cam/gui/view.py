@@ -11,6 +11,14 @@ STOCK_COLOUR = (0.62, 0.70, 0.76)
 SMOOTH_DEG = 25
 
 
+def show_colours(vobj):
+    """Colour the triangles by the object's FaceColours where the user has not switched that off. FreeCAD takes them at
+    the moment it is switched on, and those of another mesh would stay where they do not fit."""
+    if getattr(vobj, "Coloring", False):
+        vobj.Coloring = False
+        vobj.Coloring = True
+
+
 class SimulationView:
     """View provider: FreeCAD's mesh view, with an icon that shows whether the results are up to date."""
 
@@ -19,6 +27,8 @@ class SimulationView:
         vobj.ShapeColor = STOCK_COLOUR
         vobj.DisplayMode = "Shaded"
         vobj.CreaseAngle = SMOOTH_DEG
+        if hasattr(vobj, "Coloring"):  # from here on the user's
+            vobj.Coloring = True
 
     def attach(self, vobj):
         """Called when the view is made and when a document is opened."""
@@ -31,9 +41,11 @@ class SimulationView:
         return os.path.join(ICONS, "swarf.svg" if up_to_date else "swarf-outdated.svg")
 
     def updateData(self, obj, name):
-        """The tree asks for the icon again only when told."""
+        """The tree asks for the icon again only when told, and FreeCAD colours a mesh only when told."""
         if name == "UpToDate":
             obj.ViewObject.signalChangeIcon()
+        elif name in ("Mesh", "FaceColours"):
+            show_colours(obj.ViewObject)
 
     def doubleClicked(self, vobj):
         """Open the panel on this simulation."""
