@@ -197,7 +197,7 @@ def print_notes(job: Job) -> None:
     if job.stock is not None and job.stock["kind"] == "result":
         print_notes(job.stock["job"])
     for note in job.program.notes:
-        tell(f"{note[0]}: {gcode.note_text(note)}")
+        tell(gcode.note_text(note))
     for text in job.notes:
         tell(f"note: {one_line(text)}")
 

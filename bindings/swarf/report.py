@@ -8,6 +8,7 @@ from typing import Any, Optional
 from . import _native, loads, parts, timing
 from .files import write_text
 from .job import Job, number_of, operation_of
+from .meshing import volume_off
 from .simulate import Result
 from .verify import Verification, uncut_text
 
@@ -199,11 +200,14 @@ def _loads(done: Verification, names: list[str]) -> dict[str, Any]:
 
 
 def _mesh(result: Result) -> Optional[dict[str, Any]]:
-    """What is known of a mesh that was streamed: how many triangles, and that it is closed, as it would have failed."""
+    """What is known of the mesh; of one that was streamed how many triangles, and that it is closed, as it would have
+    failed. ``volume_off`` is its volume against ``surface_mm3``, of that; not where pieces were left out."""
     mesh, contour = result.mesh, result.contour
     made = {
         "error_mm": None if contour is None else contour.error_mm,
+        "intersections_found": None if contour is None else contour.intersections_found,
         "intersections_left": None if contour is None else contour.intersections_left,
+        "split_edges": None if contour is None else contour.split_edges,
         "surface_mm3": None if contour is None else contour.surface_mm3,
         "unseen_mm3": None if contour is None else contour.unseen_mm3,
     }
@@ -215,6 +219,7 @@ def _mesh(result: Result) -> Optional[dict[str, Any]]:
         "triangles": mesh.triangle_count,
         "closed": mesh.closed,
         "volume_mm3": mesh.volume,
+        "volume_off": None if contour is None or result.dropped_mm3 else volume_off(contour, mesh.volume),
         **made,
         "area_mm2_by_face": areas,
         "analytic_share": None if not areas or not mesh.area else 1 - areas["other"] / sum(areas.values()),

@@ -73,6 +73,7 @@ def test_everything_at_once(swarf_run, program, tmp_path):
     assert volume["final"] == pytest.approx(volume["initial"] - volume["removed"])
     assert sum(report["removed_mm3_by_operation"].values()) == pytest.approx(volume["removed"], rel=1e-6)
     assert report["mesh"]["closed"] and 100 < report["mesh"]["triangles"] < 5000
+    assert (report["mesh"]["intersections_found"], report["mesh"]["split_edges"]) == (0, 0)
     assert report["tools"][0]["diameter_mm"] == 6
     for name in ("s.stl", "s.ply", "s.obj", "s.vdb", "s.png"):
         assert (tmp_path / name).stat().st_size > 1000
@@ -598,3 +599,28 @@ def test_a_stock_of_which_only_a_thin_floor_is_left_is_told(swarf_run, tmp_path)
                                "--voxel", "0.5", "--output", "z.stl")
     assert status == 0
     assert "warning: what is left of the stock is thinner than a voxel: no triangles in z.stl\n" in err
+
+
+def test_a_volume_that_could_not_be_kept_is_told(swarf_run, groove, tmp_path):
+    """With few voxels a fifth of the error is not enough; a stream and a mesh say the same, the report too."""
+    words = ("--error", "0.2", "--keep-volume")
+    outputs = (("--output", "part.stl"), ("--output", "part.ply", "--output", "part.vdb", "--report", "r.json"))
+    (status, _, streamed), (_, _, whole) = [swarf_run(*groove, "--voxel", "2", *words, *chosen) for chosen in outputs]
+    mesh = json.loads((tmp_path / "r.json").read_text())["mesh"]
+    volume, surface = swarf.Mesh.read(tmp_path / "part.stl").volume, mesh["surface_mm3"]
+    assert mesh["volume_mm3"] == pytest.approx(volume, rel=1e-7)
+    assert mesh["volume_off"] == pytest.approx((volume - surface) / surface, rel=1e-3) and mesh["volume_off"] > 1e-3
+    assert status == 0 and streamed == whole == (
+        f"swarf: warning: the mesh has {volume:.8g} mm3, the surface it stands for {surface:.8g}, "
+        f"{mesh['volume_off']:.1e} of it apart: --keep-volume may shift vertices no farther\n")
+    for output in ("again.stl", "again.ply"):
+        status, _, err = swarf_run("mesh", "part.vdb", *words, "--output", output)
+        assert status == 0 and f"the mesh has {swarf.Mesh.read(tmp_path / output).volume:.8g} mm3" in err
+        assert swarf_run("mesh", "part.vdb", *words[:2], "--output", output) == (0, "", "")
+    assert swarf_run(*groove, *words, "--output", "part.stl") == (0, "", "")
+
+
+def test_notes_of_the_program_say_their_kind_once(swarf_run, program):
+    program.write_text(GCODE.replace("M2", ""))
+    status, _, err = swarf_run("simulate", program, "--stock", STOCK, "--tool", TOOL, "--voxel", "1")
+    assert status == 0 and err.startswith(f"swarf: {program}:") and err.count("warning") == 1

@@ -169,6 +169,9 @@ def run(arguments: argparse.Namespace) -> int:
         tell(f"note: {files}: facets, no faces as they were cut: {NO_PROGRAM}")
     if made is None:
         return DONE
-    for line in meshing.notes(made, arguments.output, arguments.budget, error):
+    kept = None
+    if arguments.keep_volume:
+        kept = meshing.volume_of(None if isinstance(mesh, _native.Stock) else mesh, arguments.output)
+    for line in meshing.notes(made, arguments.output, arguments.budget, error, kept):
         tell(line)
     return DONE if made.budget_met else FINDINGS

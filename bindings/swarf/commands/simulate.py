@@ -9,10 +9,11 @@ import time
 from typing import Any
 
 from .. import colours, inputs, meshing, report, timing
+from .._native import Contour
 from ..console import DONE, FINDINGS, check_outputs, one_line, say, tell
 from ..files import check_suffix
 from ..progress import Bar
-from ..simulate import MESH_SUFFIXES, check_coloured, check_mesh, mesh_error, output_suffix, simulate
+from ..simulate import MESH_SUFFIXES, Result, check_coloured, check_mesh, mesh_error, output_suffix, simulate
 from ..stocks import RESAMPLED_FIELD
 from ..verify import check_tolerance, uncut_text
 
@@ -41,7 +42,9 @@ def add(subparsers: Any) -> None:
                          help="mesh files: follow edges that are closer to each other than a voxel, as those of "
                          "threads; takes longer")
     command.add_argument("--picture", metavar="FILE.png", help="write a picture")
-    command.add_argument("--report", metavar="FILE.json", help="write a report")
+    command.add_argument("--report", metavar="FILE.json",
+                         help="write a report; it tells of the mesh, which is made in memory for it even where it "
+                         "would be written to one .stl file without that")
     command.add_argument("--machine", metavar="FILE.json", help="speeds and accelerations of the machine, for its time")
 
 
@@ -102,13 +105,17 @@ def run(arguments: argparse.Namespace) -> int:
         found += [f"{finding.severity}: {of}line {finding.line}: {one_line(uncut_text(finding, played))}"
                   for finding in simulation.findings]
     inputs.print_findings(found + told)
-    met = True
     if result.contour is not None:
-        files = [path for path in arguments.output if output_suffix(path) in MESH_SUFFIXES]
-        for line in meshing.notes(result.contour, files, arguments.budget,
-                                  mesh_error(arguments.error, result.stock.voxel)):
-            tell(line)
-        met = result.contour.budget_met
+        tell_of_mesh(result, result.contour, arguments)
     if sys.stdout.isatty():
         say([report.summary(made)])
-    return FINDINGS if result.failed or not met else DONE
+    return FINDINGS if result.failed or not getattr(result.contour, "budget_met", True) else DONE
+
+
+def tell_of_mesh(result: Result, made: Contour, arguments: argparse.Namespace) -> None:
+    """What there is to say of the mesh, on stderr."""
+    files = [path for path in arguments.output if output_suffix(path) in MESH_SUFFIXES]
+    is_kept = arguments.keep_volume and not result.dropped_mm3
+    for line in meshing.notes(made, files, arguments.budget, mesh_error(arguments.error, result.stock.voxel),
+                              meshing.volume_of(result.mesh, files) if is_kept else None):
+        tell(line)
