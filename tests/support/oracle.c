@@ -319,6 +319,39 @@ static double sweep_distance(const void *of, const double point[3])
     return oracle_distance(s->body, s->path, point);
 }
 
+/* Place along the path, 0 to 1, that is nearest in plan. */
+static double nearest_in_plan(const swarf_path *path, const double p[3])
+{
+    double s;
+    if (path->is_arc) {
+        const double *c = path->arc.centre;
+        const double from = atan2(path->start[1] - c[1], path->start[0] - c[0]);
+        s = fmod(atan2(p[1] - c[1], p[0] - c[0]) - from + 4 * pi, 2 * pi) / path->arc.angle_rad;
+    } else {
+        const double along[2] = {path->end[0] - path->start[0], path->end[1] - path->start[1]};
+        const double square = along[0] * along[0] + along[1] * along[1];
+        if (square == 0) return 0;
+        s = ((p[0] - path->start[0]) * along[0] + (p[1] - path->start[1]) * along[1]) / square;
+    }
+    return fmin(fmax(s, 0), 1);
+}
+
+double oracle_swept(const oracle_body *body, const swarf_path *path, const double point[3])
+{
+    double least = INFINITY;
+    const double moments[3] = {0, 1, nearest_in_plan(path, point)};
+    for (int k = 0; k < 3; k++) {
+        double tip[3];
+        oracle_tip(path, moments[k], tip);
+        least = fmin(least, hypot(point[0] - tip[0], point[1] - tip[1]));
+    }
+    if (path->start[2] == path->end[2]) return oracle_meridian(body, least, point[2] - path->start[2]);
+    const int is_plunge = path->start[0] == path->end[0] && path->start[1] == path->end[1];
+    const double away = least - body->radius, below = fmin(path->start[2], path->end[2]) - point[2];
+    if (fmax(away, below) > 0.7 || (is_plunge && away > 0.1)) return fmax(away, below);
+    return oracle_distance(body, path, point);
+}
+
 double oracle_gradient(const oracle_body *body, const swarf_path *path, const double point[3], double step,
                        double out[3])
 {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cases.h"
+#include "faces.h"
 #include "gradient.h"
 #include "stocks.h"
 
@@ -21,48 +22,27 @@ typedef struct part {
     int count;
 } part;
 
-/* Level sweeps in closed form: a cutter's distance never falls with the plan distance from its axis, so that the least
- * plan distance decides. */
-static double sweep_distance(const part *t, int i, const double p[3])
-{
-    const swarf_path *path = &t->paths[i];
-    const double away = hypot(p[0] - path->start[0], p[1] - path->start[1]) - t->body.radius;
-    if (path->start[0] == path->end[0] && path->start[1] == path->end[1] && away > 0.1) return away; /* far enough */
-    if (path->start[2] != path->end[2]) return oracle_distance(&t->body, path, p);
-    double tip[3], s;
-    if (path->is_arc) {
-        const double *c = path->arc.centre;
-        const double from = atan2(path->start[1] - c[1], path->start[0] - c[0]);
-        s = fmod(atan2(p[1] - c[1], p[0] - c[0]) - from + 4 * pi, 2 * pi) / path->arc.angle_rad;
-    } else {
-        const double along[2] = {path->end[0] - path->start[0], path->end[1] - path->start[1]};
-        s = ((p[0] - path->start[0]) * along[0] + (p[1] - path->start[1]) * along[1]) /
-            (along[0] * along[0] + along[1] * along[1]);
-    }
-    double least = INFINITY;
-    const double moments[3] = {0, 1, fmin(fmax(s, 0), 1)};
-    for (int k = 0; k < 3; k++) {
-        oracle_tip(path, moments[k], tip);
-        least = fmin(least, hypot(p[0] - tip[0], p[1] - tip[1]));
-    }
-    return oracle_meridian(&t->body, least, p[2] - path->start[2]);
-}
-
-/* The true surface's distance with its sign: of the block less the sweeps. */
-static double true_value(const void *of, const double p[3])
+/* Face 0 .. 5 of the block, then one per sweep, or (-1) the whole: the true surface's distance with its sign. */
+static double face_value(const void *of, int face, const double p[3])
 {
     const part *t = of;
+    if (face >= 6) return -oracle_swept(&t->body, &t->paths[face - 6], p);
+    if (face >= 0) return face % 2 ? p[face / 2] - block.hi[face / 2] : block.lo[face / 2] - p[face / 2];
     double value = -INFINITY;
-    for (int k = 0; k < 3; k++) value = fmax(value, fmax(block.lo[k] - p[k], p[k] - block.hi[k]));
-    for (int i = 0; i < t->count; i++) value = fmax(value, -sweep_distance(t, i, p));
+    for (int i = 0; i < 6 + t->count; i++) value = fmax(value, face_value(of, i, p));
     return value;
+}
+
+static double true_value(const void *of, const double p[3])
+{
+    return face_value(of, -1, p);
 }
 
 /* Whether two sweeps come near, so that edges between them may. */
 static int near_two(const part *t, const double p[3])
 {
     int count = 0;
-    for (int i = 0; i < t->count; i++) count += sweep_distance(t, i, p) < 2 * voxel;
+    for (int i = 0; i < t->count; i++) count += oracle_swept(&t->body, &t->paths[i], p) < 2 * voxel;
     return count > 1;
 }
 
@@ -145,6 +125,9 @@ typedef struct figures {
     double normal;   /* greatest angle of a triangle to the flat face it is on, degrees */
     int normal_bad;  /* triangles above 1 degree */
     int edge_count;
+    int meet_count;  /* vertices whose cell an edge passes where two sweeps, or one and the block, meet */
+    double meet;     /* greatest distance of those to that edge, in voxels */
+    double meet_bad; /* share above 0.02 */
 } figures;
 
 static int cell_of(const double p[3])
@@ -197,7 +180,22 @@ static void measure_edges(const swarf_triangles *t, edges *e, figures *out)
     out->edge_bad = out->edge_count ? (double)bad / out->edge_count : 0;
 }
 
-static int edges_seen; /* vertices at edges that were measured, in all */
+/* The same where sweeps meet each other and the block, in any direction: all edges but those that one sweep leaves. */
+static void measure_meeting(const part *truth, const swarf_triangles *t, figures *out)
+{
+    faces all = {.value = face_value, .of = truth, .count = 6 + truth->count, .apart = 6, .voxel = voxel, .bend = 0.2};
+    int bad = 0;
+    for (int k = 0; k < 3; k++) all.origin[k] = block.lo[k] + 0.5 * voxel;
+    for (size_t i = 0; i < t->vertex_count; i++) {
+        const double p[3] = {t->xyz[3 * i], t->xyz[3 * i + 1], t->xyz[3 * i + 2]};
+        int corner;
+        const double away = faces_edge_distance(&all, p, &corner);
+        out->meet = fmax(out->meet, away);
+        out->meet_count += away >= 0;
+        bad += away > 0.02;
+    }
+    out->meet_bad = out->meet_count ? (double)bad / out->meet_count : 0;
+}
 
 static figures measure(const part *truth, const swarf_mesh *mesh, edges *e, test_random *random)
 {
@@ -235,6 +233,7 @@ static figures measure(const part *truth, const swarf_mesh *mesh, edges *e, test
         out.normal_bad += angle > 1;
     }
     measure_edges(&t, e, &out);
+    measure_meeting(truth, &t, &out);
     return out;
 }
 
@@ -346,6 +345,28 @@ static swarf_program *make_program(const part *t)
 static const double beyond_allowed[CASE_CUTTERS] = {0.001, 0.001,  0.001, 0.002, 0.001,  0.0013, 0.001,
                                                     0.001, 0.0055, 0.003, 0.008, 0.0152, 0.001,  0.0057};
 
+/* Vertices farther than 0.02 voxel from the edge where sweeps meet that passes their cell, as seen; half as many again
+ * may be. Of level slots and arcs there were none. Most are in cells that two edges pass, of which a vertex can be on
+ * one only; else on a face of cells that an edge just touches. */
+static const int off_seen[CASE_CUTTERS][MOTIONS] = {
+    [1] = {[CROSS] = 1},
+    [2] = {[RAMP] = 1, [CROSS] = 2},
+    [3] = {[RAMP] = 7, [CROSS] = 1},
+    [4] = {[CROSS] = 1},
+    [5] = {[RAMP] = 3, [CROSS] = 6},
+    [6] = {[RAMP] = 1, [CROSS] = 1},
+    [7] = {[CROSS] = 1},
+    [8] = {[RAMP] = 2, [CROSS] = 6},
+    [9] = {[RAMP] = 60, [CROSS] = 25},
+    [10] = {[RAMP] = 1, [CROSS] = 10},
+    [11] = {[RAMP] = 2, [CROSS] = 57},
+    [12] = {[RAMP] = 3, [CROSS] = 3},
+    [13] = {[CROSS] = 1},
+};
+
+/* Vertices at edges that must be measured, else nothing is shown: two thirds of what is seen at least. */
+static const int least_met[MOTIONS] = {[SLOT] = 64, [RAMP] = 50, [ARC] = 100, [CROSS] = 125};
+
 /* Simplified by an error, the mesh is within that of the true surface both ways. */
 static void check_reach(int index, const char *name, const part *truth, swarf_stock *stock,
                         const swarf_contour_options *exact, const swarf_mesh *uniform, const edges *e,
@@ -412,9 +433,11 @@ static void check_part(int index, motion m, test_random *random)
         const figures f = measure(&truth, mesh, &truth_edges, random),
                       v = measure(&truth, uniform, &truth_edges, random);
         printf("%-30s %-15s vertices off %.5f (OpenVDB %.3f) voxels; %4d at edges off %.4f (%.3f), %.4f above 0.02; "
-               "normals %.2f (%.2f) degrees; %zu of %zu exact, %zu cut\n",
-               name, motion_names[m], f.off, v.off, f.edge_count, f.edge, v.edge, f.edge_bad, f.normal, v.normal,
-               report.exact_vertices, swarf_mesh_triangles(mesh).vertex_count, report.intersections_found);
+               "%4d where sweeps meet off %.4f (%.3f), %.4f above 0.02; normals %.2f (%.2f) degrees; %zu of %zu exact, "
+               "%zu cut\n",
+               name, motion_names[m], f.off, v.off, f.edge_count, f.edge, v.edge, f.edge_bad, f.meet_count, f.meet,
+               v.meet, f.meet_bad, f.normal, v.normal, report.exact_vertices, swarf_mesh_triangles(mesh).vertex_count,
+               report.intersections_found);
         const swarf_topology topology = swarf_mesh_topology(mesh);
         CHECK(topology.closed && !topology.nonmanifold_edges && !topology.misoriented_edges && !topology.degenerate);
         CHECK(report.intersections_left == 0);
@@ -423,10 +446,11 @@ static void check_part(int index, motion m, test_random *random)
          * roots of the thread are two all along, and up to two turn over there */
         CHECK(f.normal_bad <= (index == THREAD_MILL ? 2 : 1));
         if (index != THREAD_MILL) CHECK(f.edge_bad * f.edge_count <= 2 + 0.02 * f.edge_count);
-        if (v.edge_count > 0) CHECK(v.edge_bad > 0.5);
+        CHECK(f.meet_count >= least_met[m] && 2 * f.meet_bad * f.meet_count < 3 * off_seen[index][m] + 1);
+        CHECK(v.meet_bad > 0.5 && v.meet > 0.4);
+        if (m != RAMP) CHECK(f.edge_count > 50 && v.edge_bad > 0.5);
         if (index == THREAD_MILL && m != RAMP) check_split(stock, &options, mesh, &report);
         check_reach(index, name, &truth, stock, &options, uniform, &truth_edges, random);
-        edges_seen += f.edge_count;
     }
     swarf_mesh_release(mesh);
     swarf_mesh_release(uniform);
@@ -556,61 +580,16 @@ static void check_shallow(void)
     swarf_cutter_release(cutter);
 }
 
-/* A random program as it was seen: `met` of its vertices at least lie on edges, and all but a few on the surface. */
-static void check_known(uint64_t state, size_t met)
-{
-    test_random random = {state};
-    const double size = test_random_in(&random, 0.05, 0.2);
-    swarf_surface *surface = NULL;
-    swarf_surface_near *near = NULL;
-    swarf_mesh *mesh = NULL;
-    swarf_contour_report report = {0};
-    swarf_stock *stock = stock_random(&random, size, 6, &surface);
-    swarf_contour_options options = swarf_contour_options_default();
-    options.error_mm = 0;
-    options.surface = surface;
-    if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) exit(test_end());
-    if (!CHECK_OK(swarf_surface_near_create(surface, &near))) exit(test_end());
-    CHECK(report.sharp_vertices >= met);
-    const swarf_triangles t = swarf_mesh_triangles(mesh);
-    size_t off = 0;
-    for (size_t i = 0; i < t.vertex_count; i++) {
-        double p[3];
-        swarf_box about;
-        swarf_surface_point found;
-        for (int k = 0; k < 3; k++) {
-            p[k] = t.xyz[3 * i + k];
-            about.lo[k] = p[k] - size;
-            about.hi[k] = p[k] + size;
-        }
-        CHECK_OK(swarf_surface_gather(near, SIZE_MAX, &about));
-        swarf_surface_evaluate(near, p, &found);
-        off += fabs(found.value) > 1.2e-3 * size;
-    }
-    CHECK(off <= 4);
-    printf("known program: %zu vertices on edges, %zu of %zu off the surface\n", report.sharp_vertices, off,
-           t.vertex_count);
-    swarf_surface_near_destroy(near);
-    swarf_mesh_release(mesh);
-    swarf_surface_release(surface);
-    swarf_stock_destroy(stock);
-}
-
 int main(void)
 {
     check_surfaces();
     check_shallow();
-    /* 952 are met and 1 is off, 934 with quick rounds alone and 20 off where points out of sight are kept; 1116 and 2,
-     * 1113 with quick rounds alone, 1099 with sure ones alone */
-    check_known(0x256bed0295c89b26, 945);
-    check_known(0x5ad0cd5c394558a9, 1115);
     const test_random begin = test_random_begin(41);
-    const int full = getenv("SWARF_TEST_FULL") != NULL; /* else every other motion of each cutter */
+    const int full = test_size() == TEST_FULL; /* else every other motion of each cutter */
     for (int index = 0; index < CASE_CUTTERS; index++)
         for (int m = 0; m < MOTIONS; m++) {
             test_random random = begin; /* what is seen of one part does not hang on the others */
             if (full || (index + m) % 2 == 0) check_part(index, (motion)m, &random);
         }
-    CHECK(edges_seen > 1000); /* else nothing was shown of edges */
     return test_end();
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "gradient.h"
+#include "faces.h"
 #include "shapes.h"
 #include "stocks.h"
 
@@ -93,84 +93,16 @@ static double part_value(const part *t, int number, const double at[3])
     return sign * face_value(f, p);
 }
 
-typedef struct asked {
-    const part *part;
-    int number;
-} asked;
-
-static double asked_value(const void *of, const double p[3])
+static double faces_value(const void *of, int number, const double p[3])
 {
-    const asked *a = of;
-    return part_value(a->part, a->number, p);
+    return part_value(of, number, p);
 }
 
-/* Whether the gradient is one of a distance, as it is not where faces meet. */
-static int gradient_of(const part *t, int number, const double p[3], double out[3])
+static faces faces_of(const part *t)
 {
-    const asked of = {t, number};
-    return fabs(test_gradient(asked_value, &of, p, 1e-4, out) - 1) < 5e-4;
-}
-
-/* The nearest point where two faces meet, and the direction of their edge. */
-static int find_edge(const part *t, int i, int j, const double from[3], double q[3], double along[3])
-{
-    memcpy(q, from, 3 * sizeof *q);
-    for (int step = 0; step < 6; step++) {
-        double n[3], m[3], cosine = 0, size = 0;
-        const double r = -part_value(t, i, q), s = -part_value(t, j, q);
-        if (!gradient_of(t, i, q, n) || !gradient_of(t, j, q, m)) return 0;
-        for (int k = 0; k < 3; k++) cosine += n[k] * m[k];
-        const double sine = 1 - cosine * cosine;
-        if (sine < 0.03) return 0; /* 10 degrees */
-        for (int k = 0; k < 3; k++) {
-            q[k] += ((r - cosine * s) * n[k] + (s - cosine * r) * m[k]) / sine;
-            along[k] = n[(k + 1) % 3] * m[(k + 2) % 3] - n[(k + 2) % 3] * m[(k + 1) % 3];
-            size += along[k] * along[k];
-        }
-        for (int k = 0; k < 3; k++) along[k] /= sqrt(size);
-    }
-    return fabs(part_value(t, i, q)) < 1e-6 && fabs(part_value(t, j, q)) < 1e-6;
-}
-
-/* Whether the edge goes on for half a voxel in the cell of a vertex, and there is one. */
-static int is_in_cell(const part *t, const double origin[3], const double p[3], const double q[3],
-                      const double along[3])
-{
-    double lo = -INFINITY, hi = INFINITY, middle[3], normal[3];
-    for (int k = 0; k < 3; k++) {
-        const double low = origin[k] + floor((p[k] - origin[k]) / voxel) * voxel;
-        const double a = (low - q[k]) / along[k], b = (low + voxel - q[k]) / along[k];
-        lo = fmax(lo, fmin(a, b));
-        hi = fmin(hi, fmax(a, b));
-    }
-    if (!(hi - lo >= 0.5 * voxel)) return 0;
-    for (int k = 0; k < 3; k++) middle[k] = q[k] + 0.5 * (lo + hi) * along[k];
-    return fabs(true_value(t, middle)) < 1e-3 * voxel && !gradient_of(t, -1, middle, normal);
-}
-
-/* Whether another face than the two of an edge is near: of those that meet in a corner voxels see little. */
-static int is_corner(const part *t, const double p[3], int i, int j)
-{
-    double sign;
-    for (int k = 0; face_of(t, k, &sign); k++)
-        if (k != i && k != j && fabs(part_value(t, k, p)) < 3 * voxel) return 1;
-    return 0;
-}
-
-/* Of a vertex whose cell an edge passes the distance to the edge, in voxels; negative for others. */
-static double edge_distance(const part *t, const double origin[3], const double p[3], int *corner)
-{
-    double least = INFINITY, sign;
-    *corner = 0;
-    for (int i = 0; face_of(t, i, &sign); i++)
-        for (int j = 0; j < i && fabs(part_value(t, i, p)) < 2 * voxel; j++) {
-            double q[3], along[3];
-            if (fabs(part_value(t, j, p)) > 2 * voxel || !find_edge(t, i, j, p, q, along)) continue;
-            if (!is_in_cell(t, origin, p, q, along)) continue;
-            least = fmin(least, hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]) / voxel);
-            *corner |= is_corner(t, p, i, j);
-        }
-    return isinf(least) ? -1 : least;
+    faces out = {.value = faces_value, .of = t, .count = t->first.count, .voxel = voxel, .bend = 5e-4};
+    for (int i = 0; i < t->cuts; i++) out.count += t->cut[i].count;
+    return out;
 }
 
 /* What half of them, 99 of 100 and all are within. */
@@ -200,17 +132,17 @@ typedef struct figures {
 } figures;
 
 /* Angle between a triangle and the flat face that it is on; negative where there is none. */
-static double angle_of(const part *t, const float *xyz, const uint32_t v[3])
+static double angle_of(const faces *t, const float *xyz, const uint32_t v[3])
 {
     double corner[3][3], middle[3], n[3], true_n[3], other[3], size = 0, cosine = 0;
     for (int k = 0; k < 3; k++)
         for (size_t c = 0; c < 3; c++) corner[k][c] = (double)xyz[3 * (size_t)v[k] + c];
     for (int c = 0; c < 3; c++) middle[c] = (corner[0][c] + corner[1][c] + corner[2][c]) / 3;
-    if (!gradient_of(t, -1, middle, true_n)) return -1;
+    if (!faces_gradient(t, -1, middle, true_n)) return -1;
     for (int k = 0; k < 3; k++) {
         double towards[3], same = 0;
         for (int c = 0; c < 3; c++) towards[c] = corner[k][c] + 0.1 * (middle[c] - corner[k][c]);
-        if (!gradient_of(t, -1, towards, other)) return -1;
+        if (!faces_gradient(t, -1, towards, other)) return -1;
         for (int c = 0; c < 3; c++) same += other[c] * true_n[c];
         if (same < cos(0.5 * pi / 180)) return -1;
     }
@@ -232,13 +164,15 @@ static figures measure(const part *truth, const double origin[3], const swarf_me
     double *off = malloc(room * sizeof *off), *edge = malloc(room * sizeof *edge),
            *corner = malloc(room * sizeof *corner);
     size_t edges = 0, corners = 0, angles = 0;
+    faces all = faces_of(truth);
+    memcpy(all.origin, origin, sizeof all.origin);
     figures out = {.volume = swarf_mesh_topology(mesh).volume_mm3};
     if (!CHECK(off && edge && corner)) exit(test_end());
     for (size_t i = 0; i < t.vertex_count; i++) {
         const double p[3] = {(double)t.xyz[3 * i], (double)t.xyz[3 * i + 1], (double)t.xyz[3 * i + 2]};
         off[i] = fabs(true_value(truth, p)) / voxel;
         int is_near;
-        const double away = edge_distance(truth, origin, p, &is_near);
+        const double away = faces_edge_distance(&all, p, &is_near);
         if (away < 0) continue;
         if (is_near)
             corner[corners++] = away;
@@ -249,7 +183,7 @@ static figures measure(const part *truth, const double origin[3], const swarf_me
     out.edge = spread_of(edge, edges);
     out.corner = spread_of(corner, corners);
     for (size_t i = 0; i < t.triangle_count; i += 3) {
-        off[angles] = angle_of(truth, t.xyz, t.index + 3 * i);
+        off[angles] = angle_of(&all, t.xyz, t.index + 3 * i);
         angles += off[angles] >= 0;
     }
     out.normal = spread_of(off, angles);
