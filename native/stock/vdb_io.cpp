@@ -172,13 +172,19 @@ bool all_finite(const openvdb::FloatTree &tree)
     return true;
 }
 
+constexpr double farthest = 1e6; /* mm, as for all stocks: floats tell no vertices apart that are far away */
+
 /* Refuse what would not fit: two far apart leaves of a broken file ask for all the nodes between them. */
 swarf_status check_extent(const openvdb::FloatGrid &grid, const char *path, double voxel)
 {
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     if (box.empty()) return SWARF_OK;
+    const openvdb::Vec3d middle = grid.indexToWorld(box.getCenter());
     swarf_box extent;
     for (int k = 0; k < 3; k++) {
+        if (!(std::fabs(middle[k]) <= farthest))
+            return swarf_fail(SWARF_ERROR_FORMAT, "%s: its middle is at %g mm in %c; -%g to %g mm are possible", path,
+                              middle[k], "xyz"[k], farthest, farthest);
         extent.lo[k] = box.min()[k] * voxel;
         extent.hi[k] = (box.max()[k] + 1.0) * voxel;
     }

@@ -89,13 +89,13 @@ void check_ours()
         }
 }
 
-/* What has no surface is refused: solid tiles alone, and a sphere that lost the leaf at one of its poles. */
-void refuse(const char *what, const openvdb::FloatGrid::Ptr &grid)
+/* What has no surface is refused: solid tiles alone, and a sphere that lost the leaf at one of its poles; and what is
+ * so far away that its mesh would have all vertices in one point. */
+void refuse(const char *what, const openvdb::FloatGrid::Ptr &grid, const char *why = "bare.vdb: not a narrow band")
 {
     write(at("bare.vdb"), grid);
     swarf_stock *stock = nullptr;
-    if (!CHECK_FAILS(swarf_stock_read(at("bare.vdb").c_str(), nullptr, &stock), SWARF_ERROR_FORMAT,
-                     "bare.vdb: not a narrow band"))
+    if (!CHECK_FAILS(swarf_stock_read(at("bare.vdb").c_str(), nullptr, &stock), SWARF_ERROR_FORMAT, why))
         std::printf("    %s\n", what);
     swarf_stock_destroy(stock);
 }
@@ -113,6 +113,10 @@ void check_refusals()
         for (int y = -16; y <= 8; y += 8)
             for (int z = 80; z <= 104; z += 8) grid->tree().addTile(1, openvdb::Coord(x, y, z), band, false);
     refuse("a hole", grid);
+
+    grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(20, openvdb::Vec3f(0), static_cast<float>(voxel));
+    grid->transform().postTranslate(openvdb::Vec3d(0, -1e12, 0));
+    refuse("far away", grid, "bare.vdb: its middle is at -1e+12 mm in y");
 }
 
 using shape = double (*)(const openvdb::Vec3d &);
