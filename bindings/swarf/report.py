@@ -205,6 +205,7 @@ def _mesh(result: Result) -> Optional[dict[str, Any]]:
     mesh, contour = result.mesh, result.contour
     made = {
         "error_mm": None if contour is None else contour.error_mm,
+        "budget_met": None if contour is None else contour.budget_met,
         "intersections_found": None if contour is None else contour.intersections_found,
         "intersections_left": None if contour is None else contour.intersections_left,
         "split_edges": None if contour is None else contour.split_edges,

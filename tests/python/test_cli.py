@@ -544,12 +544,14 @@ def test_a_budget_of_triangles_is_met_or_what_is_possible_is_said(swarf_run, gro
     status, _, err = swarf_run(*words, "--budget", 2 * fewest, "--report", "r.json")
     assert (status, err) == (0, "")
     assert fewest < swarf.Mesh.read(tmp_path / "part.stl").triangle_count <= 2 * fewest
-    assert 0 < json.loads((tmp_path / "r.json").read_text())["mesh"]["error_mm"] < 0.5
+    told = json.loads((tmp_path / "r.json").read_text())["mesh"]
+    assert 0 < told["error_mm"] < 0.5 and told["budget_met"] is True
     for report in ((), ("--report", "r.json")):  # with one .stl file, and a mesh for the report as well
         status, _, err = swarf_run(*words, "--budget", "9", *report)
         assert status == 1 and err.count("\n") == 1
         left = swarf.Mesh.read(tmp_path / "part.stl").triangle_count
         assert f"warning: {left} triangles are more than 9: an error of 0.5 mm leaves no fewer; allow" in err
+    assert json.loads((tmp_path / "r.json").read_text())["mesh"]["budget_met"] is False
 
 
 @pytest.mark.parametrize("words, says", [
