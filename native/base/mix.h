@@ -21,4 +21,18 @@ static inline uint64_t swarf_mix_in(uint64_t hash, uint64_t word)
     return hash ^ hash >> 29;
 }
 
+/** The same where words are many and may differ little: every bit of a word reaches every bit of the hash. */
+static inline uint64_t swarf_mix_fold(uint64_t hash, uint64_t word)
+{
+    const unsigned __int128 product = (unsigned __int128)(hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
+    return ((uint64_t)product ^ (uint64_t)(product >> 64)) + UINT64_C(0x2545f4914f6cdd1d);
+}
+
+/** The next number of a row that looks random (splitmix64). */
+static inline uint64_t swarf_mix_next(uint64_t *state)
+{
+    *state += UINT64_C(0x9e3779b97f4a7c15);
+    return swarf_mix(*state);
+}
+
 #endif

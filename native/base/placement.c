@@ -2,6 +2,7 @@
 #include "base/placement.h"
 
 #include "base/status.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,16 +18,6 @@ swarf_placement swarf_placement_identity(void)
     return (swarf_placement){.rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 static void scale(double a[3], double factor)
 {
     for (int k = 0; k < 3; k++) a[k] *= factor;
@@ -35,11 +26,11 @@ static void scale(double a[3], double factor)
 /* The first row as it is, the second across it, the third across both: exact where the axes are axes already. */
 static void mend(double rows[3][3])
 {
-    scale(rows[0], 1 / sqrt(dot(rows[0], rows[0])));
-    const double along = dot(rows[0], rows[1]);
+    scale(rows[0], 1 / sqrt(vector_dot(rows[0], rows[0])));
+    const double along = vector_dot(rows[0], rows[1]);
     for (int k = 0; k < 3; k++) rows[1][k] -= along * rows[0][k];
-    scale(rows[1], 1 / sqrt(dot(rows[1], rows[1])));
-    cross(rows[0], rows[1], rows[2]);
+    scale(rows[1], 1 / sqrt(vector_dot(rows[1], rows[1])));
+    vector_cross(rows[0], rows[1], rows[2]);
 }
 
 swarf_status swarf_placement_check(const swarf_placement *placement)
@@ -49,7 +40,7 @@ swarf_status swarf_placement_check(const swarf_placement *placement)
             SWARF_REQUIRE(isfinite(k < 3 ? placement->rotation[i][k] : placement->shift[i]),
                           "placement: row %d, column %d is not finite", i, k);
         for (int k = 0; k <= i; k++) {
-            const double wanted = i == k, found = dot(placement->rotation[k], placement->rotation[i]);
+            const double wanted = i == k, found = vector_dot(placement->rotation[k], placement->rotation[i]);
             SWARF_REQUIRE(fabs(found - wanted) <= mended,
                           "placement: rows %d and %d of the rotation have the product %g where a rotation has %g: it "
                           "skews or scales",
@@ -57,8 +48,9 @@ swarf_status swarf_placement_check(const swarf_placement *placement)
         }
     }
     double third[3];
-    cross(placement->rotation[0], placement->rotation[1], third);
-    SWARF_REQUIRE(dot(third, placement->rotation[2]) > 0, "placement: it mirrors; a part can only be turned and moved");
+    vector_cross(placement->rotation[0], placement->rotation[1], third);
+    SWARF_REQUIRE(vector_dot(third, placement->rotation[2]) > 0,
+                  "placement: it mirrors; a part can only be turned and moved");
     return SWARF_OK;
 }
 
@@ -87,7 +79,7 @@ swarf_status swarf_placement_create(const double rows[12], swarf_placement *out)
 void swarf_placement_direction(const swarf_placement *placement, const double in[3], double out[3])
 {
     const double d[3] = {in[0], in[1], in[2]};
-    for (int k = 0; k < 3; k++) out[k] = dot(placement->rotation[k], d);
+    for (int k = 0; k < 3; k++) out[k] = vector_dot(placement->rotation[k], d);
 }
 
 void swarf_placement_point(const swarf_placement *placement, const double in[3], double out[3])
@@ -101,7 +93,7 @@ swarf_placement swarf_placement_inverse(const swarf_placement *placement)
     swarf_placement back = {0};
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) back.rotation[i][k] = placement->rotation[k][i];
-    for (int i = 0; i < 3; i++) back.shift[i] = 0.0 - dot(back.rotation[i], placement->shift);
+    for (int i = 0; i < 3; i++) back.shift[i] = 0.0 - vector_dot(back.rotation[i], placement->shift);
     return back;
 }
 
@@ -116,8 +108,8 @@ int swarf_placement_quarters(const swarf_placement *placement, int axis[3], int 
             if (row[other] != 0) return 0;
     }
     double third[3];
-    cross(placement->rotation[0], placement->rotation[1], third);
-    if (dot(third, placement->rotation[2]) != 1) return 0; /* two rows along one axis, or a mirror */
+    vector_cross(placement->rotation[0], placement->rotation[1], third);
+    if (vector_dot(third, placement->rotation[2]) != 1) return 0; /* two rows along one axis, or a mirror */
     for (int k = 0; k < 3; k++) {
         axis[k] = found[k];
         sign[k] = placement->rotation[k][found[k]] > 0 ? 1 : -1;

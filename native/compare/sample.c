@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/status.h"
+#include "base/vector.h"
 #include "compare/compare.h"
 #include "solid/solid.h"
 #include "stock/leaf.h"
@@ -104,11 +105,6 @@ static void gradient_near(const float *value, const int at[3], double out[3])
     }
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static swarf_status add_sample(swarf_samples *samples, size_t *room, const swarf_sample *sample)
 {
     SWARF_TRY(swarf_array_reserve((void **)&samples->samples, room, samples->count + 1, sizeof *sample));
@@ -128,16 +124,16 @@ static swarf_sample make_crossing(const struct work *work, const swarf_leaf *lea
     gradient_at(a, u);
     gradient_near(b, next, v);
     u[axis] = v[axis] = (double)*b - *a; /* beyond them the band may end */
-    const double uu = sqrt(dot(u, u)), vv = sqrt(dot(v, v));
+    const double uu = sqrt(vector_dot(u, u)), vv = sqrt(vector_dot(v, v));
     swarf_sample sample = {.kind = SWARF_POINT_EDGE};
-    if (dot(u, v) >= smooth_cosine * uu * vv && fabs(uu - voxel) <= smooth_length * voxel &&
+    if (vector_dot(u, v) >= smooth_cosine * uu * vv && fabs(uu - voxel) <= smooth_length * voxel &&
         fabs(vv - voxel) <= smooth_length * voxel)
         sample.kind = 0;
     for (int k = 0; k < 3; k++) {
         normal[k] = (1 - t) * u[k] + t * v[k];
         sample.xyz[k] = (float)(work->layout->origin[k] + voxel * (leaf->ijk[k] + at[k] - 1 + (k == axis ? t : 0)));
     }
-    const double length = sqrt(dot(normal, normal));
+    const double length = sqrt(vector_dot(normal, normal));
     sample.area = (float)(length > 0 ? voxel * voxel * fabs(normal[axis]) / length : 0);
     return sample;
 }
@@ -294,7 +290,7 @@ static swarf_status try_point(struct finder *f, size_t place, const double point
     }
     if (within) value = (double)swarf_probe_slope(&f->probe, at, slope);
     if (work->marks) {
-        const int is_beside = fabs(value) <= work->least && dot(slope, normal) >= least_slope;
+        const int is_beside = fabs(value) <= work->least && vector_dot(slope, normal) >= least_slope;
         const int has_side = work->design->state[place] != SOLID_SLIVER;
         swarf_mark_slots(work->layout, at, is_beside && has_side ? SLOT_MET : SLOT_OPEN, work->marks);
     }
@@ -339,7 +335,7 @@ static swarf_status sample_triangle(struct finder *f, size_t place, double *area
         if (edge[i] > edge[base]) base = i;
     }
     swarf_corners_normal(t, normal);
-    const double own = 0.5 * sqrt(dot(normal, normal));
+    const double own = 0.5 * sqrt(vector_dot(normal, normal));
     if (!(own > 0)) return SWARF_OK;
     *area += own;
     for (int k = 0; k < 3; k++) normal[k] /= 2 * own;

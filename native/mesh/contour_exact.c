@@ -8,6 +8,8 @@
  */
 #include "mesh/contour.h"
 
+#include "base/vector.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -66,11 +68,6 @@ typedef struct cell {
     int count;
 } cell;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Value in voxels at a point of the cell, and what the surface is there. */
 static double look(const cell *c, const double x[3], swarf_surface_point *found)
 {
@@ -90,7 +87,7 @@ static void find_faces(cell *c)
         for (; to < end; to++) {
             const double *n = to->plane.normal;
             if (to->move == polygon->move[i] && to->piece == polygon->piece[i] &&
-                dot(n, polygon->normal[i]) > one_face_cosine * sqrt(dot(n, n)))
+                vector_dot(n, polygon->normal[i]) > one_face_cosine * sqrt(vector_dot(n, n)))
                 break;
         }
         if (to == end) {
@@ -105,7 +102,7 @@ static void find_faces(cell *c)
     }
     for (int i = 0; i < c->count; i++) {
         contour_plane *plane = &c->faces[i].plane;
-        const double length = sqrt(dot(plane->normal, plane->normal));
+        const double length = sqrt(vector_dot(plane->normal, plane->normal));
         for (int k = 0; k < 3; k++) {
             plane->point[k] /= c->faces[i].count;
             plane->normal[k] /= length > 0 ? length : 1;
@@ -116,10 +113,10 @@ static void find_faces(cell *c)
 /* Whether what was found is face number `own` of `chosen`, rather than another of them or none. */
 static int is_face(const face *const chosen[MOST_FACES], int count, int own, const swarf_surface_point *found)
 {
-    const double likeness = dot(found->normal, chosen[own]->plane.normal);
+    const double likeness = vector_dot(found->normal, chosen[own]->plane.normal);
     if (found->move == chosen[own]->move && found->piece == chosen[own]->piece) return likeness > one_face_cosine;
     for (int i = 0; i < count; i++)
-        if (i != own && dot(found->normal, chosen[i]->plane.normal) > likeness) return 0;
+        if (i != own && vector_dot(found->normal, chosen[i]->plane.normal) > likeness) return 0;
     return likeness > met_again_cosine;
 }
 
@@ -138,8 +135,8 @@ static void lead_on(const double q[3], const double normal[3], const double befo
         plane->normal[k] = normal[k] + on * (normal[k] - before[k]);
         chord[k] = normal[k] + plane->normal[k];
     }
-    const double length = sqrt(dot(plane->normal, plane->normal));
-    const double above = (dot(chord, x) - dot(chord, q)) / dot(chord, chord);
+    const double length = sqrt(vector_dot(plane->normal, plane->normal));
+    const double above = (vector_dot(chord, x) - vector_dot(chord, q)) / vector_dot(chord, chord);
     for (int k = 0; k < 3; k++) {
         plane->point[k] = x[k] - above * chord[k];
         plane->normal[k] /= length;
@@ -273,7 +270,7 @@ static double pair_away(const cell *c, const face *a, const face *b)
 {
     const contour_plane planes[] = {a->plane, b->plane};
     double at[3];
-    if (dot(a->plane.normal, b->plane.normal) > same_face_cosine ||
+    if (vector_dot(a->plane.normal, b->plane.normal) > same_face_cosine ||
         swarf_contour_meet(planes, 2, c->middle, first_eigenvalue, &c->polygon->bounds, at) < 2)
         return INFINITY;
     return apart(at, c->middle);
@@ -347,7 +344,7 @@ int swarf_contour_vertex_exact(const contour_polygon *polygon, const swarf_surfa
     swarf_contour_middle(polygon, c.middle);
     for (int i = 0; i < polygon->count; i++) {
         for (int j = 0; j < i; j++) {
-            const double likeness = dot(polygon->normal[i], polygon->normal[j]);
+            const double likeness = vector_dot(polygon->normal[i], polygon->normal[j]);
             least_dot = likeness < least_dot ? likeness : least_dot;
         }
         one_piece &= polygon->move[i] == polygon->move[0] && polygon->piece[i] == polygon->piece[0];

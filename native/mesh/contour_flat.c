@@ -2,6 +2,7 @@
 /* Vertices of cells about which the field is flat: the middle of their crossings, if the exact surface, where there is
  * one, has the same plane there. */
 #include "base/status.h"
+#include "base/vector.h"
 #include "mesh/contour.h"
 #include "surface/surface.h"
 
@@ -12,18 +13,14 @@
  * vertex; and the cosine between their normals, for 0.3 degrees. */
 static const double same_plane = 1e-3, same_plane_cosine = 0.999986;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Whether the field is flat round all crossings, and these on one plane. */
 static int is_flat(const contour_polygon *polygon, const double middle[3])
 {
     const double *n = polygon->normal[0];
     for (int i = 0; i < polygon->count; i++)
-        if (polygon->move[i] != SWARF_BY_FLAT_FIELD || fabs(dot(n, polygon->point[i]) - dot(n, middle)) > same_plane ||
-            dot(n, polygon->normal[i]) < same_plane_cosine)
+        if (polygon->move[i] != SWARF_BY_FLAT_FIELD ||
+            fabs(vector_dot(n, polygon->point[i]) - vector_dot(n, middle)) > same_plane ||
+            vector_dot(n, polygon->normal[i]) < same_plane_cosine)
             return 0;
     return 1;
 }
@@ -35,7 +32,8 @@ static int is_on(const swarf_surface_near *surface, const contour_polygon *polyg
     double world[3];
     for (int k = 0; k < 3; k++) world[k] = polygon->origin[k] + middle[k] * polygon->voxel;
     swarf_surface_evaluate(surface, world, &seen);
-    return fabs(seen.value) <= same_plane * polygon->voxel && dot(seen.normal, polygon->normal[0]) >= same_plane_cosine;
+    return fabs(seen.value) <= same_plane * polygon->voxel &&
+           vector_dot(seen.normal, polygon->normal[0]) >= same_plane_cosine;
 }
 
 swarf_status swarf_contour_vertex_flat(contour_near *near, const int at[3], const contour_polygon *polygon,

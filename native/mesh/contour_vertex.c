@@ -7,6 +7,8 @@
  * of the crossings with eigenvalues that carry nothing left out.
  */
 #include "mesh/contour.h"
+
+#include "base/vector.h"
 #include "mesh/eigen.h"
 
 #include <math.h>
@@ -17,11 +19,6 @@
 static const double same_face_cosine = 0.866;
 /* Eigenvalues below this part of the greatest carry nothing but the noise of the gradients. */
 static const double least_eigenvalue = 0.04;
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 void swarf_contour_middle(const contour_polygon *polygon, double out[3])
 {
@@ -69,7 +66,7 @@ static void project(const contour_polygon *polygon, double x[3])
     for (int round = 0; round < 3; round++) {
         double value, gradient[3];
         look(polygon, x, &value, gradient);
-        const double square = dot(gradient, gradient);
+        const double square = vector_dot(gradient, gradient);
         if (fabs(value) < 1e-5 || square < 1e-6) return;
         for (int k = 0; k < 3; k++) x[k] -= value * gradient[k] / square;
         swarf_contour_clamp(&polygon->bounds, x);
@@ -97,9 +94,10 @@ static void move_inside(const contour_bounds *bounds, const double edge[3], doub
 static int meet_two(const contour_plane *a, const contour_plane *b, const double about[3], double least,
                     const contour_bounds *bounds, double out[3])
 {
-    const double *n = a->normal, *m = b->normal, c = dot(n, m);
+    const double *n = a->normal, *m = b->normal, c = vector_dot(n, m);
     if (!(1 - fabs(c) > least * (1 + fabs(c)))) return 0;
-    const double r = dot(n, a->point) - dot(n, about), s = dot(m, b->point) - dot(m, about), size = 1 - c * c;
+    const double r = vector_dot(n, a->point) - vector_dot(n, about), s = vector_dot(m, b->point) - vector_dot(m, about),
+                 size = 1 - c * c;
     double edge[3];
     for (int k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -117,7 +115,7 @@ int swarf_contour_meet(const contour_plane *planes, int count, const double abou
     if (count == 2 && meet_two(&planes[0], &planes[1], about, least, bounds, out)) return 2;
     for (int i = 0; i < count; i++) {
         const double *n = planes[i].normal;
-        const double away = dot(n, planes[i].point) - dot(n, about);
+        const double away = vector_dot(n, planes[i].point) - vector_dot(n, about);
         for (int r = 0; r < 3; r++) {
             for (int c = 0; c < 3; c++) a[r][c] += n[r] * n[c];
             right[r] += n[r] * away;
@@ -127,7 +125,7 @@ int swarf_contour_meet(const contour_plane *planes, int count, const double abou
     int rank = 0;
     memcpy(out, about, 3 * sizeof *out);
     for (int i = 0; i < 3 && value[i] > least * value[0] && value[i] > 0; i++, rank++)
-        for (int k = 0; k < 3; k++) out[k] += dot(vector[i], right) / value[i] * vector[i][k];
+        for (int k = 0; k < 3; k++) out[k] += vector_dot(vector[i], right) / value[i] * vector[i][k];
     if (rank == 2) move_inside(bounds, vector[2], out);
     return rank;
 }
@@ -160,7 +158,7 @@ void swarf_contour_rise(const contour_polygon *polygon, double x[3])
             normal[k] += polygon->normal[i][k];
             away += polygon->normal[i][k] * (polygon->point[i][k] - x[k]);
         }
-    const double length = sqrt(dot(normal, normal));
+    const double length = sqrt(vector_dot(normal, normal));
     if (length > 0)
         for (int k = 0; k < 3; k++) x[k] += 0.5 * away / polygon->count * normal[k] / length;
 }
@@ -170,7 +168,7 @@ int swarf_contour_vertex(const contour_polygon *polygon, double out[3])
     double x[3], least_dot = 1;
     swarf_contour_middle(polygon, x);
     for (int i = 0; i < polygon->count; i++)
-        for (int j = 0; j < i; j++) least_dot = fmin(least_dot, dot(polygon->normal[i], polygon->normal[j]));
+        for (int j = 0; j < i; j++) least_dot = fmin(least_dot, vector_dot(polygon->normal[i], polygon->normal[j]));
     int rank = 1, by_faces = 0;
     for (int i = 0; i < polygon->count; i++) by_faces |= polygon->move[i] == SWARF_BY_FACES;
     if (least_dot < same_face_cosine) {

@@ -3,6 +3,7 @@
  * Larger ones, those of tiles, and what long parts meet farther out are left to the check of the whole mesh. */
 #include "mesh/crease.h"
 
+#include "base/mix.h"
 #include "base/parallel.h"
 #include "base/status.h"
 #include "mesh/intersect.h"
@@ -20,7 +21,7 @@ typedef struct cube_set {
 
 static size_t find(const cube_set *set, uint64_t cube)
 {
-    size_t at = (size_t)(cube * UINT64_C(0x9e3779b97f4a7c15) >> 32) & (set->slot_count - 1);
+    size_t at = (size_t)swarf_mix(cube) & (set->slot_count - 1);
     while (set->slots[at] && set->slots[at] != cube) at = (at + 1) & (set->slot_count - 1);
     return at;
 }

@@ -6,6 +6,7 @@
  * bound. What has no neighbour then lies in the plane, goes round, and is closed by a cap. */
 #include "base/memory.h"
 #include "base/status.h"
+#include "base/vector.h"
 #include "mesh/halfedge.h"
 #include "mesh/mesh.h"
 #include "mesh/polygon.h"
@@ -24,16 +25,6 @@ typedef struct splitting {
     swarf_mesh_data vertices;          /* old and new */
 } splitting;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 static swarf_status take_plane(splitting *s, const double point[3], const double normal[3])
 {
     SWARF_TRY(swarf_plane_take(point, normal, s->n));
@@ -43,10 +34,10 @@ static swarf_status take_plane(splitting *s, const double point[3], const double
         if (fabs(s->n[k]) < fabs(s->n[least])) least = k;
     double axis[3] = {0};
     axis[least] = 1;
-    cross(axis, s->n, s->u);
-    const double length = sqrt(dot(s->u, s->u));
+    vector_cross(axis, s->n, s->u);
+    const double length = sqrt(vector_dot(s->u, s->u));
     for (int k = 0; k < 3; k++) s->u[k] /= length;
-    cross(s->n, s->u, s->v);
+    vector_cross(s->n, s->u, s->v);
     return SWARF_OK;
 }
 
@@ -58,7 +49,7 @@ static swarf_status find_heights(splitting *s)
     for (size_t i = 0; i < s->t.vertex_count; i++) {
         const float *p = s->t.xyz + 3 * i;
         const double away[3] = {(double)p[0] - s->point[0], (double)p[1] - s->point[1], (double)p[2] - s->point[2]};
-        const double height = dot(away, s->n);
+        const double height = vector_dot(away, s->n);
         s->height[i] = fabs(height) <= on ? 0 : height;
         SWARF_TRY(swarf_mesh_data_vertex(&s->vertices, p));
     }
@@ -114,8 +105,8 @@ static swarf_status keep_triangle(const splitting *s, uint32_t triangle, int way
             u[k] = p[1][k] - p[0][k];
             v[k] = p[2][k] - p[0][k];
         }
-        cross(u, v, normal);
-        if ((dot(normal, s->n) > 0 ? -1 : 1) != way) return SWARF_OK;
+        vector_cross(u, v, normal);
+        if ((vector_dot(normal, s->n) > 0 ? -1 : 1) != way) return SWARF_OK;
     } else if (!beyond) {
         return SWARF_OK;
     }
@@ -147,8 +138,8 @@ static void flatten(const splitting *s, uint32_t vertex, int way, double out[2])
     const float *p = s->vertices.xyz + 3 * (size_t)vertex;
     const double away[3] = {(double)p[0] - s->point[0], (double)p[1] - s->point[1], (double)p[2] - s->point[2]};
     /* the cap of what is above faces down: seen from there, u and v change places */
-    out[0] = dot(away, way < 0 ? s->u : s->v);
-    out[1] = dot(away, way < 0 ? s->v : s->u);
+    out[0] = vector_dot(away, way < 0 ? s->u : s->v);
+    out[1] = vector_dot(away, way < 0 ? s->v : s->u);
 }
 
 static int by_from(const void *a, const void *b)

@@ -6,7 +6,7 @@
 #include "render/camera.h"
 
 #include "base/status.h"
-#include "render/vector.h"
+#include "base/vector.h"
 
 /* Opening angle of the presets: close to a 50 mm photographic lens, edges hardly converge. */
 static const double preset_fov_deg = 30.0;

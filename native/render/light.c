@@ -9,8 +9,8 @@
  */
 #include "base/parallel.h"
 #include "base/status.h"
+#include "base/vector.h"
 #include "render/picture.h"
-#include "render/vector.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,8 +4,8 @@
 #include "render/look.h"
 
 #include "base/status.h"
+#include "base/vector.h"
 #include "render/embree_fixtures.h"
-#include "render/vector.h"
 
 #include <string.h>
 

@@ -4,8 +4,8 @@
  * Every change is made on a copy that is checked before it is handed back: a camera that works stays one that works.
  */
 #include "base/status.h"
+#include "base/vector.h"
 #include "render/camera.h"
-#include "render/vector.h"
 
 static const double radians = 0.017453292519943295;
 /* A turntable stops this far from the poles: there `up` would be along the view. */

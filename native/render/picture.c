@@ -8,8 +8,8 @@
 
 #include "base/parallel.h"
 #include "base/status.h"
+#include "base/vector.h"
 #include "render/refine.h"
-#include "render/vector.h"
 
 #include <stdlib.h>
 #include <string.h>

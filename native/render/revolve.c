@@ -4,8 +4,8 @@
 #include "render/revolve.h"
 
 #include "base/status.h"
+#include "base/vector.h"
 #include "cutter/cutter.h"
-#include "render/vector.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #include "render/shade.h"
 
 #include "base/status.h"
-#include "render/vector.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <pthread.h>

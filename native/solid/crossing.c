@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/status.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,18 +18,13 @@ static const double touching = 1e-3;
 /* Triangles with a common corner lie on top of each other or beside each other below this sine. */
 static const double least_sine = 0.01;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Whether the projections of two triangles on an axis lie more than `gap` apart. */
 static int are_apart(double a[3][3], double b[3][3], const double axis[3], double gap)
 {
     double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
-    const double length = sqrt(dot(axis, axis));
+    const double length = sqrt(vector_dot(axis, axis));
     for (int i = 0; i < 3; i++) {
-        const double at[2] = {dot(a[i], axis), dot(b[i], axis)};
+        const double at[2] = {vector_dot(a[i], axis), vector_dot(b[i], axis)};
         for (int k = 0; k < 2; k++) {
             lo[k] = at[k] < lo[k] ? at[k] : lo[k];
             hi[k] = at[k] > hi[k] ? at[k] : hi[k];
@@ -37,27 +33,22 @@ static int are_apart(double a[3][3], double b[3][3], const double axis[3], doubl
     return lo[0] - hi[1] > gap * length || lo[1] - hi[0] > gap * length;
 }
 
-static void cross(const double u[3], const double v[3], double out[3])
-{
-    for (int k = 0; k < 3; k++) out[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-}
-
 /* Whether two planes are one but for rounding, by their normals: it turns that of a small or thin triangle farthest. */
 static int are_parallel(const double normal_a[3], const double normal_b[3])
 {
-    const double squares = dot(normal_a, normal_a) * dot(normal_b, normal_b);
+    const double squares = vector_dot(normal_a, normal_a) * vector_dot(normal_b, normal_b);
     double sine[3];
-    cross(normal_a, normal_b, sine);
-    return squares > 0 && dot(sine, sine) <= least_sine * least_sine * squares;
+    vector_cross(normal_a, normal_b, sine);
+    return squares > 0 && vector_dot(sine, sine) <= least_sine * least_sine * squares;
 }
 
 /* Whether more corners of a triangle lie in the plane of another than the two have in common: then an edge of it may
  * lie in the other's face. */
 static int has_edge_in(double triangle[3][3], const double plane[3], const double normal[3], double gap, int share)
 {
-    const double limit = gap * sqrt(dot(normal, normal)), offset = dot(plane, normal);
+    const double limit = gap * sqrt(vector_dot(normal, normal)), offset = vector_dot(plane, normal);
     int in = 0;
-    for (int i = 0; i < 3; i++) in += fabs(dot(triangle[i], normal) - offset) <= limit;
+    for (int i = 0; i < 3; i++) in += fabs(vector_dot(triangle[i], normal) - offset) <= limit;
     return in > share;
 }
 
@@ -78,8 +69,8 @@ static int meet(const swarf_corners *first, const swarf_corners *second, double 
             edge_a[i][k] = a[(i + 1) % 3][k] - a[i][k];
             edge_b[i][k] = b[(i + 1) % 3][k] - b[i][k];
         }
-    cross(edge_a[0], edge_a[1], normal_a);
-    cross(edge_b[0], edge_b[1], normal_b);
+    vector_cross(edge_a[0], edge_a[1], normal_a);
+    vector_cross(edge_b[0], edge_b[1], normal_b);
     const int flat = share && are_parallel(normal_a, normal_b);
     const double least = share ? -touching * gap : gap;
     const int beside_a = !flat && are_apart(a, b, normal_a, least);
@@ -87,13 +78,13 @@ static int meet(const swarf_corners *first, const swarf_corners *second, double 
     const int beside_b = !flat && are_apart(a, b, normal_b, least);
     if (beside_b && !(share && has_edge_in(a, b[0], normal_b, gap, share))) return 0;
     for (int i = 0; i < 3; i++) {
-        cross(normal_a, edge_a[i], axis);
+        vector_cross(normal_a, edge_a[i], axis);
         if (are_apart(a, b, axis, least)) return 0;
-        cross(normal_b, edge_b[i], axis);
+        vector_cross(normal_b, edge_b[i], axis);
         if (are_apart(a, b, axis, least)) return 0;
     }
     for (int i = 0; i < 9 && !flat; i++) {
-        cross(edge_a[i / 3], edge_b[i % 3], axis);
+        vector_cross(edge_a[i / 3], edge_b[i % 3], axis);
         if ((beside_a && are_parallel(axis, normal_a)) || (beside_b && are_parallel(axis, normal_b))) continue;
         if (are_apart(a, b, axis, least)) return 0;
     }

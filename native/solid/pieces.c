@@ -14,6 +14,7 @@
 #include "base/mix.h"
 #include "base/parallel.h"
 #include "base/status.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -66,24 +67,6 @@ struct knife {
     size_t cover_count, cover_room;
 };
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double u[3], const double v[3], double out[3])
-{
-    for (int k = 0; k < 3; k++) out[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-}
-
-/* Make it a unit vector; 0 where it has no direction. */
-static int normalize(double v[3])
-{
-    const double length = sqrt(dot(v, v));
-    for (int k = 0; k < 3 && length > 0; k++) v[k] /= length;
-    return length > 0;
-}
-
 static double along(const double axis[3], const double origin[3], const double point[3])
 {
     return axis[0] * (point[0] - origin[0]) + axis[1] * (point[1] - origin[1]) + axis[2] * (point[2] - origin[2]);
@@ -113,8 +96,8 @@ static int touches(const struct knife *knife, const struct node *node, const dou
     for (int i = 0; i < 3; i++) {
         double edge[3], outwards[3];
         for (int k = 0; k < 3; k++) edge[k] = node->p[(i + 1) % 3][k] - node->p[i][k];
-        cross(edge, knife->normal, outwards);
-        if (!normalize(outwards)) continue;
+        vector_cross(edge, knife->normal, outwards);
+        if (!vector_normalise(outwards)) continue;
         if (along(outwards, node->p[i], from) > thin && along(outwards, node->p[i], to) > thin) return 0;
     }
     return 1;
@@ -139,7 +122,7 @@ static void point_on_edge(const double a[3], const double b[3], double away_a, d
 static double square_between(const double a[3], const double b[3])
 {
     const double v[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return dot(v, v);
+    return vector_dot(v, v);
 }
 
 static swarf_status cut_node(struct knife *knife, size_t number, const double away[3], double thin)
@@ -188,8 +171,8 @@ static swarf_status cut_line(struct knife *knife, const double from[3], const do
     const double thin = least_cut * knife->gap;
     double way[3], across[3], away[3];
     for (int k = 0; k < 3; k++) way[k] = to[k] - from[k];
-    cross(knife->normal, way, across);
-    if (dot(way, way) <= thin * thin || !normalize(across)) return SWARF_OK;
+    vector_cross(knife->normal, way, across);
+    if (vector_dot(way, way) <= thin * thin || !vector_normalise(across)) return SWARF_OK;
     size_t depth = 1;
     SWARF_TRY(swarf_array_reserve((void **)&knife->stack, &knife->stack_room, 1, sizeof *knife->stack));
     knife->stack[0] = 0;
@@ -245,22 +228,15 @@ static swarf_status cut_by_triangle(struct knife *knife, size_t other)
         q[i][3] = along(knife->normal, knife->corner, q[i]);
     }
     swarf_corners_normal(t, normal);
-    const int has_normal = normalize(normal);
-    cross(normal, knife->normal, sine);
-    if (!has_normal || dot(sine, sine) > least_sine * least_sine) return cut_by_line(knife, q);
+    const int has_normal = vector_normalise(normal) > 0;
+    vector_cross(normal, knife->normal, sine);
+    if (!has_normal || vector_dot(sine, sine) > least_sine * least_sine) return cut_by_line(knife, q);
     int count = clip(q, 3, 1, knife->gap, part[0]);
     count = clip(part[0], count, -1, knife->gap, part[1]);
     for (int i = 0; i < count; i++) /* drop it on the plane */
         for (int k = 0; k < 3; k++) part[1][i][k] -= part[1][i][3] * knife->normal[k];
     for (int i = 0; i < count; i++) SWARF_TRY(cut_line(knife, part[1][i], part[1][(i + 1) % count]));
     return SWARF_OK;
-}
-
-/* The next number of a row that looks random. */
-static uint64_t next_random(uint64_t *state)
-{
-    *state += 0x9e3779b97f4a7c15u;
-    return swarf_mix(*state);
 }
 
 /* Cut the triangle at knife->place along all others that it meets. */
@@ -278,7 +254,7 @@ static swarf_status cut_triangle(struct knife *knife)
     memcpy(knife->order, other, count * sizeof *knife->order);
     uint64_t state = knife->place;
     for (size_t i = count; i-- > 0;) {
-        const size_t j = next_random(&state) % (i + 1);
+        const size_t j = swarf_mix_next(&state) % (i + 1);
         const uint32_t now = knife->order[j];
         knife->order[j] = knife->order[i];
         SWARF_TRY(cut_by_triangle(knife, now));
@@ -300,7 +276,7 @@ static swarf_status find_covers(struct knife *knife)
         struct cover cover;
         for (int j = 0; j < 9; j++) cover.p[j / 3][j % 3] = knife->solid->corners[other].xyz[j / 3][j % 3];
         swarf_corners_normal(&knife->solid->corners[other], cover.normal);
-        if (!normalize(cover.normal) || dot(cover.normal, knife->normal) < least_true_cosine) continue;
+        if (!vector_normalise(cover.normal) || vector_dot(cover.normal, knife->normal) < least_true_cosine) continue;
         for (int k = 0; k < 3; k++) {
             cover.lo[k] = fmin(cover.p[0][k], fmin(cover.p[1][k], cover.p[2][k])) - 2 * knife->gap;
             cover.hi[k] = fmax(cover.p[0][k], fmax(cover.p[1][k], cover.p[2][k])) + 2 * knife->gap;
@@ -321,8 +297,8 @@ static int is_covered(const struct knife *knife, double p[3][3])
         for (int j = 0; j < 9 && covers; j++) {
             double edge[3], outwards[3];
             for (int k = 0; k < 3; k++) edge[k] = cover->p[(j / 3 + 1) % 3][k] - cover->p[j / 3][k];
-            cross(edge, cover->normal, outwards);
-            covers = normalize(outwards) && along(outwards, cover->p[j / 3], p[j % 3]) <= knife->gap &&
+            vector_cross(edge, cover->normal, outwards);
+            covers = vector_normalise(outwards) && along(outwards, cover->p[j / 3], p[j % 3]) <= knife->gap &&
                      fabs(along(cover->normal, cover->p[0], p[j % 3])) <= flush;
         }
         if (covers) return 1;
@@ -352,12 +328,12 @@ static swarf_status take_piece(const struct knife *knife, double p[3][3], swarf_
     round_corners(p, &piece.corners);
     for (int k = 0; k < 3; k++) middle[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
     swarf_corners_normal(&piece.corners, normal);
-    if (!normalize(normal)) return SWARF_OK;
+    if (!vector_normalise(normal)) return SWARF_OK;
     const int bounds = swarf_solid_bounds(knife->solid, middle, knife->normal);
     const int counts = bounds != 0 && !is_covered(knife, p);
     if (!counts || bounds < 0) *whole = 0;
     if (!counts) return SWARF_OK;
-    if (bounds > 0 && dot(normal, knife->normal) > least_true_cosine) piece.state = SOLID_PIECE;
+    if (bounds > 0 && vector_dot(normal, knife->normal) > least_true_cosine) piece.state = SOLID_PIECE;
     return add_piece(pieces, &piece);
 }
 
@@ -395,7 +371,7 @@ static swarf_status cut_places(void *context, size_t index)
     for (size_t i = index * PLACES; i < end && status == SWARF_OK; i++) {
         knife.place = work->places[i];
         swarf_corners_normal(&work->solid->corners[knife.place], knife.normal);
-        if (!normalize(knife.normal)) continue; /* a line bounds nothing */
+        if (!vector_normalise(knife.normal)) continue; /* a line bounds nothing */
         status = cut_triangle(&knife);
         if (status == SWARF_OK) status = find_covers(&knife);
         if (status == SWARF_OK) status = take_pieces(&knife, &work->found[index]);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Walks over a tree: what is closest, what is near, how often it goes round. Boxes are tested eight at a time in float,
  * triangles in double. */
+#include "base/vector.h"
 #include "solid/angle.h"
 #include "solid/boxes.h"
 
@@ -16,17 +17,12 @@ struct visit {
 /* Of every level but the lowest seven groups can be waiting while the eighth is looked into. */
 enum { MOST_VISITS = TREE_LEVELS * TREE_WIDTH + 1 };
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Closest point of a segment from `a` along `ab`; *t is where, 0 .. 1. */
 static double closest_on_edge(const double a[3], const double ab[3], const double point[3], double closest[3],
                               double *t)
 {
-    const double ap[3] = {point[0] - a[0], point[1] - a[1], point[2] - a[2]}, length = dot(ab, ab);
-    const double along = length > 0 ? dot(ap, ab) / length : 0;
+    const double ap[3] = {point[0] - a[0], point[1] - a[1], point[2] - a[2]}, length = vector_dot(ab, ab);
+    const double along = length > 0 ? vector_dot(ap, ab) / length : 0;
     *t = along < 0 ? 0 : along > 1 ? 1 : along;
     double square = 0;
     for (int k = 0; k < 3; k++) {
@@ -50,14 +46,14 @@ double swarf_corners_closest(const swarf_corners *triangle, const double point[3
         const int l = (k + 1) % 3, m = (k + 2) % 3;
         normal[k] = ab[l] * ac[m] - ab[m] * ac[l];
     }
-    const double area = dot(normal, normal);
+    const double area = vector_dot(normal, normal);
     /* barycentric: the share of corner 1 and 2 of the foot on the plane, times the square of twice the area */
-    const double one = dot(normal, (double[3]){ap[1] * ac[2] - ap[2] * ac[1], ap[2] * ac[0] - ap[0] * ac[2],
-                                               ap[0] * ac[1] - ap[1] * ac[0]});
-    const double two = dot(normal, (double[3]){ab[1] * ap[2] - ab[2] * ap[1], ab[2] * ap[0] - ab[0] * ap[2],
-                                               ab[0] * ap[1] - ab[1] * ap[0]});
+    const double one = vector_dot(normal, (double[3]){ap[1] * ac[2] - ap[2] * ac[1], ap[2] * ac[0] - ap[0] * ac[2],
+                                                      ap[0] * ac[1] - ap[1] * ac[0]});
+    const double two = vector_dot(normal, (double[3]){ab[1] * ap[2] - ab[2] * ap[1], ab[2] * ap[0] - ab[0] * ap[2],
+                                                      ab[0] * ap[1] - ab[1] * ap[0]});
     if (area > 0 && one >= 0 && two >= 0 && one + two <= area) {
-        const double away = dot(ap, normal);
+        const double away = vector_dot(ap, normal);
         for (int k = 0; k < 3; k++) closest[k] = point[k] - normal[k] * (away / area);
         *feature = 0;
         return away * away / area;
@@ -156,9 +152,9 @@ double swarf_box_tree_winding(const swarf_box_tree *tree, const swarf_corners *c
         const struct visit now = stack[--depth];
         const swarf_group_sum *sum = &tree->sums[tree->first[now.level] + now.group];
         const double to[3] = {sum->middle[0] - point[0], sum->middle[1] - point[1], sum->middle[2] - point[2]};
-        const double square = dot(to, to);
+        const double square = vector_dot(to, to);
         if (square > far_away * far_away * sum->radius * sum->radius) {
-            angle += dot(sum->vector, to) / (square * sqrt(square));
+            angle += vector_dot(sum->vector, to) / (square * sqrt(square));
             continue;
         }
         const size_t below = now.level ? tree->first[now.level] - tree->first[now.level - 1] : tree->count;

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "base/status.h"
+#include "base/vector.h"
 #include "solid/shells.h"
 
 #include <math.h>
@@ -21,16 +22,11 @@ static const double least_fold = 0.1;
 /* Vertices that one piece of work looks at. */
 enum { CHUNK = 4096 };
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Unit normal of a triangle; 0 where it has none. */
 static int unit_normal(const swarf_corners *t, double out[3])
 {
     swarf_corners_normal(t, out);
-    const double length = sqrt(dot(out, out));
+    const double length = sqrt(vector_dot(out, out));
     if (!(length > 0)) return 0;
     for (int k = 0; k < 3; k++) out[k] /= length;
     return 1;
@@ -45,7 +41,7 @@ static double corner_angle(const swarf_corners *t, int corner)
     }
     double n[3];
     for (int k = 0; k < 3; k++) n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-    return atan2(sqrt(dot(n, n)), dot(u, v));
+    return atan2(sqrt(vector_dot(n, n)), vector_dot(u, v));
 }
 
 struct vertex_work {
@@ -67,14 +63,14 @@ static int sum_normals(const struct vertex_work *work, size_t vertex, double sum
         const int corner = v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2;
         double normal[3];
         if (!unit_normal(&solid->corners[place], normal)) return 0;
-        if (count > 0 && dot(last, normal) < 0.5 * least_fold * least_fold - 1) return 0;
+        if (count > 0 && vector_dot(last, normal) < 0.5 * least_fold * least_fold - 1) return 0;
         const double own = corner_angle(&solid->corners[place], corner);
         angle += own;
         for (int k = 0; k < 3; k++) sum[k] += own * normal[k];
         memcpy(last, normal, sizeof last);
         place = solid->across[place][(corner + 2) % 3];
     }
-    return place == work->first[vertex] && sqrt(dot(sum, sum)) > least_fold * angle;
+    return place == work->first[vertex] && sqrt(vector_dot(sum, sum)) > least_fold * angle;
 }
 
 static swarf_status make_normals(void *context, size_t index)
@@ -85,7 +81,7 @@ static swarf_status make_normals(void *context, size_t index)
     for (size_t vertex = index * CHUNK; vertex < end; vertex++) {
         double sum[3] = {0, 0, 0};
         const int told = sum_normals(work, vertex, sum);
-        const double length = sqrt(dot(sum, sum));
+        const double length = sqrt(vector_dot(sum, sum));
         for (int k = 0; k < 3; k++) work->solid->normal[vertex][k] = told ? (float)(sum[k] / length) : 0;
     }
     return SWARF_OK;
@@ -233,14 +229,14 @@ static double feature_cosine(const swarf_solid *solid, const double point[3], co
 {
     const size_t place = nearest->place;
     const double way[3] = {point[0] - nearest->point[0], point[1] - nearest->point[1], point[2] - nearest->point[2]};
-    const double away = sqrt(dot(way, way));
+    const double away = sqrt(vector_dot(way, way));
     double normal[3];
     if (solid->open || solid->state[place] == SOLID_SLIVER) return 0;
     if (solid->state[place] == SOLID_PIECE && nearest->feature != 0) return 0;
     if (nearest->feature >= 1 && nearest->feature <= 3) {
         const float *own = solid->normal[solid->vertex[place][nearest->feature - 1]];
         for (int k = 0; k < 3; k++) normal[k] = own[k];
-        return dot(normal, way) / away;
+        return vector_dot(normal, way) / away;
     }
     if (!unit_normal(&solid->corners[place], normal)) return 0;
     if (nearest->feature == 0) { /* the way stands on the plane: only its side is in question */
@@ -252,8 +248,8 @@ static double feature_cosine(const swarf_solid *solid, const double point[3], co
     double beyond[3];
     if (other == UINT32_MAX || !unit_normal(&solid->corners[other], beyond)) return 0;
     for (int k = 0; k < 3; k++) normal[k] += beyond[k];
-    const double length = sqrt(dot(normal, normal));
-    return length > least_fold ? dot(normal, way) / (length * away) : 0;
+    const double length = sqrt(vector_dot(normal, normal));
+    return length > least_fold ? vector_dot(normal, way) / (length * away) : 0;
 }
 
 double swarf_solid_sign(const swarf_solid *solid, const double point[3], const swarf_nearest *nearest)

@@ -3,6 +3,7 @@
  * do not depend on the threads. */
 #include "stock/measure.h"
 
+#include "base/mix.h"
 #include "base/parallel.h"
 #include "base/status.h"
 #include "stock/block.h"
@@ -216,13 +217,6 @@ swarf_status swarf_measure_reach(const swarf_stock *stock, swarf_box *out)
     return SWARF_OK;
 }
 
-/* Multiply and fold: every bit of the input reaches every bit of the state. */
-static uint64_t mix(uint64_t state, uint64_t value)
-{
-    const unsigned __int128 product = (unsigned __int128)(state ^ value) * 0x9e3779b97f4a7c15u;
-    return ((uint64_t)product ^ (uint64_t)(product >> 64)) + 0x2545f4914f6cdd1du;
-}
-
 static swarf_status node_hash(void *context, size_t node)
 {
     const struct walk *walk = context;
@@ -231,11 +225,11 @@ static swarf_status node_hash(void *context, size_t node)
     for (unsigned slot = 0; slot < SWARF_NODE_SLOTS; slot++) {
         if (!(words[slot >> 6] >> (slot & 63) & 1)) continue;
         const float *values = swarf_tree_leaf(walk->stock->tree, node, slot);
-        state = mix(state, slot * 2 + (values != NULL));
+        state = swarf_mix_fold(state, slot * 2 + (values != NULL));
         for (int i = 0; values && i < SWARF_LEAF_SIZE; i += 2) {
             uint64_t pair;
             memcpy(&pair, values + i, sizeof pair);
-            state = mix(state, pair);
+            state = swarf_mix_fold(state, pair);
         }
     }
     walk->hash[node] = state;
@@ -253,7 +247,7 @@ swarf_status swarf_stock_hash(swarf_stock *stock, uint64_t *out)
                                     : swarf_fail(SWARF_ERROR_MEMORY, "stock: out of memory");
     if (status == SWARF_OK) {
         uint64_t state = nodes;
-        for (size_t node = 0; node < nodes; node++) state = mix(state, walk.hash[node]);
+        for (size_t node = 0; node < nodes; node++) state = swarf_mix_fold(state, walk.hash[node]);
         *out = state;
     }
     free(walk.hash);

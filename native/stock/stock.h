@@ -2,7 +2,7 @@
 /* Inside of a stock, for this room and the ones that read it (render, compare, mesh).
  *
  * The faces of a block that no move has touched have no leaves until someone reads them ("untouched"): the cutting
- * loop evaluates the box formula instead. swarf_stock_read_begin() makes them.
+ * loop evaluates the box formula instead. swarf_stock_enter_read() makes them.
  */
 #ifndef SWARF_STOCK_STOCK_H
 #define SWARF_STOCK_STOCK_H

@@ -2,7 +2,10 @@
 /* Base: statuses and their text, progress and cancelling, threads, instruction set.
  *
  * Every function that can fail returns a swarf_status, writes its outputs last and leaves them
- * untouched on failure. The text of the last failure is kept per thread.
+ * untouched on failure. The text of the last failure is kept per thread. All may return
+ * SWARF_ERROR_ARGUMENT for NULL, numbers not finite or options of another size, and
+ * SWARF_ERROR_MEMORY; those with progress SWARF_ERROR_CANCELLED; those with a stock
+ * SWARF_ERROR_BUSY. What else they return, and when, their docstrings name.
  */
 #ifndef SWARF_BASE_H
 #define SWARF_BASE_H

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Mesh: triangles of a stock or a design, their measures and file formats. Immutable, shared, any thread. */
+/* Mesh: triangles of a stock or a design, their measures and file formats. Immutable, shared, any thread; calls that
+ * take a stock are, as all of these, for one thread at a time. */
 #ifndef SWARF_MESH_H
 #define SWARF_MESH_H
 
@@ -23,7 +24,7 @@ SWARF_API swarf_status swarf_mesh_create_stock(swarf_stock *stock, double adapti
 typedef struct swarf_contour_options {
     size_t size;                  /**< sizeof(swarf_contour_options) */
     double error_mm;              /**< 0 to 1e6; vertices are left out while the mesh stays this near to the full one */
-    size_t triangle_budget;       /**< no more triangles than this, 0: no limit */
+    size_t triangle_budget;       /**< no more triangles than this within error_mm, not 0 then; 0: no limit */
     const swarf_surface *surface; /**< of the stock, borrowed for the call; NULL: the field alone */
     size_t moves;                 /**< the stock is the surface after its first so many moves */
     /** 0 or 1. 1: triangles that leave the surface, as beside edges closer to each other than a voxel and at wedges

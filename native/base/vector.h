@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Three doubles as a vector. */
-#ifndef SWARF_RENDER_VECTOR_H
-#define SWARF_RENDER_VECTOR_H
+#ifndef SWARF_BASE_VECTOR_H
+#define SWARF_BASE_VECTOR_H
 
 #include <math.h>
 
