@@ -50,7 +50,8 @@ def cancel_at_last(opened):
 def tinted(obj, name):
     """Share of a picture of the object alone that has the colour of its operation: the stock's own is nearly grey."""
     Gui.Selection.clearSelection()
-    others = [item for item in obj.Document.Objects if item is not obj and item.ViewObject.Visibility]
+    others = [item for item in obj.Document.Objects if item is not obj and item.ViewObject.Visibility
+              and not item.hasExtension("App::GroupExtension")]  # which would show all its members in the end
     for other in others:
         other.ViewObject.Visibility = False
     obj.ViewObject.Visibility = True
@@ -81,6 +82,62 @@ def check_colours(obj, picture):
     obj.Document.recompute()
 
 
+def check_budget(opened):
+    """Of the export panel: where it can be asked for, what is said of it and where it cannot be met."""
+    opened.budget.setValue(5)
+    assert opened.estimate.text().startswith("at most 5 triangles"), opened.estimate.text()
+    error = opened.error.value()
+    opened.error.setValue(0)
+    assert not opened.budget.isEnabled() and opened.chosen_budget == 0 and "about" in opened.estimate.text()
+    opened.error.setValue(error)
+    assert opened.budget.isEnabled() and opened.chosen_budget == 5
+    opened.kind.setCurrentIndex(opened.kind.findData(".step"))
+    assert "faces as they were cut" in opened.estimate.text(), opened.estimate.text()
+    screenshot("export_step.png")
+    opened.kind.setCurrentIndex(opened.kind.findData(".vdb"))
+    assert not opened.budget.isEnabled() and "triangles" not in opened.estimate.text()
+    opened.kind.setCurrentIndex(opened.kind.findData(".ply"))
+    path = os.path.join(OUT, "few.ply")
+    opened.start(path)
+    wait_for(lambda: not opened.working, "refusal of a budget that cannot be met")
+    assert "28 triangles are the fewest" in opened.message.text() and not os.path.exists(path), opened.message.text()
+    screenshot("export_budget.png")
+    opened.budget.setValue(28)
+
+
+def check_section(obj):
+    """The command, wires across the slot in one undoable step, and a plane that misses."""
+    from freecad.swarf_cam.gui import sectioning
+
+    document = obj.Document
+    Gui.runCommand("Swarf_Section", 0)
+    wait_for(lambda: Gui.getMainWindow().findChild(QtWidgets.QWidget, "SwarfSectionPanel") is not None, "the panel")
+    screenshot("section_panel.png")
+    close_panel()
+    opened = sectioning.show_panel(obj)
+    assert abs(opened.position.value() + 5) < 1e-3 and "-10" in opened.extent.text(), "the middle of the stock's height"
+    opened.axis.setCurrentIndex(0)
+    assert abs(opened.position.value() - 20) < 1e-3, opened.position.value()
+    opened.position.setValue(500)
+    undo, count = document.UndoCount, len(document.Objects)
+    opened.accept()
+    assert "does not cut" in opened.message.text() and not opened.closed, opened.message.text()
+    assert (document.UndoCount, len(document.Objects)) == (undo, count)
+    screenshot("section_missed.png")
+    opened.position.setValue(12.5)
+    opened.accept()
+    no_panel()
+    made = document.Objects[-1]
+    assert document.UndoCount == undo + 1 and len(made.Shape.Wires) == 1 and made.Shape.Wires[0].isClosed()
+    box = made.Shape.BoundBox
+    assert abs(box.XMin - 12.5) < 1e-3 and abs(box.XMax - 12.5) < 1e-3
+    assert abs(made.Shape.Length - (2 * 20 + 2 * 10 + 2 * 5)) < 1e-2, made.Shape.Length
+    Gui.Selection.clearSelection()
+    screenshot("section.png")
+    document.undo()
+    assert len(document.Objects) == count
+
+
 def check_export(obj):
     """The panel, its estimates, a coloured file, and an error told in it."""
     from freecad.swarf_cam.gui import exporting
@@ -92,7 +149,8 @@ def check_export(obj):
     opened = exporting.show_panel(obj)
     opened.kind.setCurrentIndex(opened.kind.findData(".ply"))
     opened.colour.setCurrentIndex(opened.colour.findData("operation"))
-    assert "triangles" in opened.estimate.text()
+    assert "about" in opened.estimate.text() and "triangles" in opened.estimate.text()
+    check_budget(opened)
     opened.start(os.path.join(OUT, "no", "folder.ply"))
     wait_for(lambda: not opened.working, "a folder that is not there")
     assert "folder.ply" in opened.message.text(), opened.message.text()
@@ -226,6 +284,8 @@ def check():
     Gui.Selection.addSelection(document.Name, obj.Name)
 
     check_export(obj)
+    Gui.Selection.addSelection(document.Name, obj.Name)
+    check_section(obj)
     check_next(document, obj)
 
     cam = "CAMWorkbench" if "CAMWorkbench" in Gui.listWorkbenches() else "PathWorkbench"

@@ -308,7 +308,8 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, toleran
     error_mm: vertices are left out up to this (None: 0.1 voxels); budget: no more triangles, if the error allows;
     colour: "operation", "deviation" (green within tolerance_mm of the design with allowance_mm left on it) or
     "thickness"; largest: the largest piece alone; fine: edges closer to each other than a voxel are followed;
-    keep_volume: vertices are shifted until the volume is that of the stock.
+    keep_volume: vertices are shifted until the volume is that of the surface that the mesh stands for; what is thinner
+    than a voxel is in no mesh.
     progress as simulate(). Any thread. JobError where nothing is left, or no mesh is that small; swarf.Error, OSError.
     """
     swarf = load()

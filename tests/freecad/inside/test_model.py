@@ -265,6 +265,8 @@ class TestModel(unittest.TestCase):
             self.assertLess(abs(size - os.path.getsize(self.path("part" + suffix))), 1500)
         full, _ = model.estimate(self.obj, ".stl", 0)
         self.assertLess(full / 2, model.export(self.obj, self.path("full.stl"), error_mm=0))
+        self.assertEqual(model.estimate(self.obj, ".stl", 0.01, budget=1000)[0], 1000)
+        self.assertEqual(model.estimate(self.obj, ".stl", 0.01, budget=10 ** 9)[0], full)
         self.assertEqual(model.estimate(self.obj, ".vdb", 0)[1], os.path.getsize(self.obj.Stock))
 
     def test_cancelled_at_any_time(self):

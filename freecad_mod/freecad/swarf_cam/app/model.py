@@ -45,14 +45,14 @@ def default_error(obj):
     return native.MESH_ERROR_VOXELS * obj.VoxelSize.Value
 
 
-def estimate(obj, suffix, error_mm, coloured=False):
+def estimate(obj, suffix, error_mm, coloured=False, budget=0):
     """(triangles, bytes) of a file, about: from the mesh in the document, whose triangles on curved faces grow as the
-    root of the error falls."""
+    root of the error falls; with a budget at most, as many of them are used as the mesh has a use for."""
     if suffix in STOCK_SUFFIXES:
         return 0, os.path.getsize(obj.Stock) if obj.Stock else 0
     most = 3 * obj.Mesh.Area / obj.VoxelSize.Value ** 2  # every crossing of the lattice has a quadrilateral
     count = obj.Mesh.CountFacets * math.sqrt(default_error(obj) / error_mm) if error_mm > 0 else most
-    count = max(4, min(count, most))
+    count = max(4, min(budget or count, most))
     return int(count), int(count * BYTES[suffix][bool(coloured)])
 
 
@@ -189,7 +189,7 @@ def export(obj, path, progress=None, **options):
     """Write what is left of the stock into a file by its suffix -> number of triangles. options: error_mm, budget,
     colour ("operation", "deviation" or "thickness"), tolerance_mm and allowance_mm (of the deviation's colours),
     largest (the largest piece alone), fine (edges closer to each other than a voxel are followed),
-    keep_volume (vertices are shifted until the volume is that of the stock)."""
+    keep_volume (vertices are shifted until the volume is that of the surface that the mesh stands for)."""
     made = steps.run(export_steps(obj, path, **options))
     count = made.run(progress)
     made.finish()
@@ -282,7 +282,7 @@ def section(obj, point, normal):
         if len(kept) > 2:
             wires.append(Part.makePolygon(kept + kept[:1]))
     if not wires:
-        raise JobError("the plane does not cut '%s'" % obj.Label)
+        raise JobError("the plane does not cut what is left in '%s'" % obj.Label)
     return Part.makeCompound(wires)
 
 

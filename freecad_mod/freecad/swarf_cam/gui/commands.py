@@ -12,7 +12,7 @@ from ..app import simulation
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
-NAMES = ["Swarf_Live", "Swarf_Simulate", "Swarf_Update", "Swarf_Export"]
+NAMES = ["Swarf_Live", "Swarf_Simulate", "Swarf_Update", "Swarf_Export", "Swarf_Section"]
 
 
 def chosen_job():
@@ -42,6 +42,16 @@ def chosen_simulation():
             return obj
     found = [obj for obj in document.Objects if simulation.is_simulation(obj)]
     return found[0] if len(found) == 1 else None
+
+
+def result_is_chosen():
+    """Whether a simulation with a result is chosen and no task is open."""
+    try:
+        chosen = chosen_simulation()
+        return (native.is_available() and not Gui.Control.activeDialog() and chosen is not None
+                and bool(chosen.Stock))
+    except (AttributeError, ReferenceError, RuntimeError):
+        return False
 
 
 class Live:
@@ -129,16 +139,34 @@ class Export:
 
     def IsActive(self):
         """Whenever a simulation with a result is chosen."""
-        try:
-            chosen = chosen_simulation()
-            return (native.is_available() and not Gui.Control.activeDialog() and chosen is not None
-                    and bool(chosen.Stock))
-        except (AttributeError, ReferenceError, RuntimeError):
-            return False
+        return result_is_chosen()
 
     def Activated(self):
         """Open the panel."""
         from .exporting import show_panel
+
+        show_panel(chosen_simulation())
+
+
+class Section:
+    """Put the outline of what is left, cut by a plane, into the document."""
+
+    def GetResources(self):
+        """Texts and icon."""
+        return {"Pixmap": os.path.join(ICONS, "swarf-section.svg"),
+                "MenuText": QT_TRANSLATE_NOOP("Swarf_Section", "Section of the stock"),
+                "ToolTip": QT_TRANSLATE_NOOP(
+                    "Swarf_Section",
+                    "Add the wires along which a plane cuts what is left of the stock: to measure, to export as DXF or "
+                    "SVG")}
+
+    def IsActive(self):
+        """Whenever a simulation with a result is chosen."""
+        return result_is_chosen()
+
+    def Activated(self):
+        """Open the panel."""
+        from .sectioning import show_panel
 
         show_panel(chosen_simulation())
 
@@ -183,6 +211,7 @@ def register():
     Gui.addCommand("Swarf_Simulate", Simulate())
     Gui.addCommand("Swarf_Update", Update())
     Gui.addCommand("Swarf_Export", Export())
+    Gui.addCommand("Swarf_Section", Section())
     if hasattr(Gui, "addWorkbenchManipulator"):
         Gui.addWorkbenchManipulator(CamEntries())
     else:

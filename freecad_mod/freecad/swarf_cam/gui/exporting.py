@@ -19,6 +19,9 @@ translate = FreeCAD.Qt.translate
 
 ERROR_DECIMALS = 4
 
+# What the spin box holds, which is more triangles than any computer's memory.
+BUDGET_MAX = 2 ** 31 - 1
+
 
 class ExportPanel(TaskPanel):
     """Task panel for one simulation object."""
@@ -39,6 +42,14 @@ class ExportPanel(TaskPanel):
         self.error.setSuffix(" mm")
         self.error.setValue(model.default_error(obj))
         layout.addRow(translate("Swarf", "Error"), self.error)
+        self.budget = QtWidgets.QSpinBox()
+        self.budget.setRange(0, BUDGET_MAX)
+        self.budget.setSingleStep(1000)
+        self.budget.setSpecialValueText(translate("Swarf", "any number"))
+        self.budget.setToolTip(translate(
+            "Swarf", "The most triangles that the mesh may have: it is made with the least error that they suffice for; "
+            "where that would be more than the error above, no file is written"))
+        layout.addRow(translate("Swarf", "Triangles"), self.budget)
         self.colour = choice()
         for kind, text in ((None, translate("Swarf", "none")), ("operation", translate("Swarf", "by operation")),
                            ("deviation", translate("Swarf", "by deviation from the model")),
@@ -63,13 +74,15 @@ class ExportPanel(TaskPanel):
         self.keep_volume = QtWidgets.QCheckBox(translate("Swarf", "keep the volume"))
         self.keep_volume.setToolTip(translate(
             "Swarf", "Flat triangles between points of a curved face change its volume: shift the points by a fifth of "
-            "the error at most, so that they do not"))
+            "the error at most, so that they do not. What is thinner than a voxel is in no mesh, and is not made up "
+            "for"))
         layout.addRow(self.keep_volume)
         self.estimate = QtWidgets.QLabel()
         self.estimate.setWordWrap(True)
         layout.addRow(self.estimate)
         self.add_progress(layout)
-        for signal in (self.kind.currentIndexChanged, self.colour.currentIndexChanged, self.error.valueChanged):
+        for signal in (self.kind.currentIndexChanged, self.colour.currentIndexChanged, self.error.valueChanged,
+                       self.budget.valueChanged):
             signal.connect(self.show_estimate)
         self.show_estimate()
 
@@ -82,16 +95,20 @@ class ExportPanel(TaskPanel):
         """How large the file becomes, and what the format has a place for."""
         mesh = self.suffix not in model.STOCK_SUFFIXES
         self.error.setEnabled(mesh)
+        self.budget.setEnabled(mesh and self.error.value() > 0)  # else no triangle can be left out
         self.largest.setEnabled(mesh)
         self.fine.setEnabled(mesh)
         self.keep_volume.setEnabled(mesh)
         self.colour.setEnabled(self.suffix in model.MESH_SUFFIXES and self.suffix != ".stl")
         self.allowance.setEnabled(self.chosen_colour == "deviation")
-        triangles, size = model.estimate(self.obj, self.suffix, self.error.value(), self.chosen_colour is not None)
-        if mesh:
-            text = translate("Swarf", "about {0} triangles, {1}").format(numbers.count(triangles), numbers.size(size))
-        else:
-            text = numbers.size(size)
+        triangles, size = model.estimate(self.obj, self.suffix, self.error.value(), self.chosen_colour is not None,
+                                         self.chosen_budget)
+        form = translate("Swarf", "at most {0} triangles, {1}") if self.chosen_budget else \
+            translate("Swarf", "about {0} triangles, {1}")
+        text = form.format(numbers.count(triangles), numbers.size(size)) if mesh else numbers.size(size)
+        if self.suffix in model.SHAPE_SUFFIXES:
+            text = translate("Swarf", "faces as they were cut, exactly; where that cannot be, flat facets as asked for "
+                             "above: {0}").format(text)
         if self.suffix in model.SHAPE_SUFFIXES and triangles > model.SHAPE_TRIANGLES_MAX:
             text += translate("Swarf", "; too many for flat facets: a shape only if all its faces are planes, "
                               "cylinders, cones, spheres and tori")
@@ -101,6 +118,11 @@ class ExportPanel(TaskPanel):
     def chosen_colour(self):
         """What the file is coloured by, None for nothing."""
         return self.colour.currentData() if self.colour.isEnabled() else None
+
+    @property
+    def chosen_budget(self):
+        """The most triangles, 0 for any number."""
+        return self.budget.value() if self.budget.isEnabled() else 0
 
     def begin(self):
         """Ask for the file, then start."""
@@ -117,8 +139,8 @@ class ExportPanel(TaskPanel):
         self.bar.setRange(0, 1000)
         self.bar.show()
         self.reading = Slices(
-            model.export_steps(self.obj, path, error_mm=self.error.value(), colour=self.chosen_colour,
-                               tolerance_mm=settings.tolerance(),
+            model.export_steps(self.obj, path, error_mm=self.error.value(), budget=self.chosen_budget,
+                               colour=self.chosen_colour, tolerance_mm=settings.tolerance(),
                                allowance_mm=self.allowance.value(), largest=self.largest.isChecked(),
                                fine=self.fine.isChecked(), keep_volume=self.keep_volume.isChecked()),
             self.on_read, self.form)

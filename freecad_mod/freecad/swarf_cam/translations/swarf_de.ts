@@ -179,6 +179,10 @@
             <translation>Wie die von Gewinden und schmalen Nuten; dauert länger</translation>
         </message>
         <message>
+            <source>Axis</source>
+            <translation>Achse</translation>
+        </message>
+        <message>
             <source>Axis that the section is across</source>
             <translation>Achse, quer zu der geschnitten wird</translation>
         </message>
@@ -367,8 +371,8 @@
             <translation>Spannmittel</translation>
         </message>
         <message>
-            <source>Flat triangles between points of a curved face change its volume: shift the points by a fifth of the error at most, so that they do not</source>
-            <translation>Ebene Dreiecke zwischen Punkten einer gekrümmten Fläche ändern deren Volumen: die Punkte um höchstens ein Fünftel des Fehlers verschieben, damit sie es nicht tun</translation>
+            <source>Flat triangles between points of a curved face change its volume: shift the points by a fifth of the error at most, so that they do not. What is thinner than a voxel is in no mesh, and is not made up for</source>
+            <translation>Ebene Dreiecke zwischen Punkten einer gekrümmten Fläche ändern deren Volumen: die Punkte um höchstens ein Fünftel des Fehlers verschieben, damit sie es nicht tun. Was dünner als ein Voxel ist, ist in keinem Netz und wird nicht ausgeglichen</translation>
         </message>
         <message>
             <source>Folder for the frames of the animation</source>
@@ -555,6 +559,10 @@
             <translation>Punkt</translation>
         </message>
         <message>
+            <source>Position</source>
+            <translation>Lage</translation>
+        </message>
+        <message>
             <source>Program</source>
             <translation>Programm</translation>
         </message>
@@ -613,6 +621,10 @@
         <message>
             <source>Section</source>
             <translation>Schnitt</translation>
+        </message>
+        <message>
+            <source>Section of the stock</source>
+            <translation>Schnitt durch das Rohteil</translation>
         </message>
         <message>
             <source>Select the solids or meshes that hold the stock in FreeCAD's tree or 3D view first.</source>
@@ -737,6 +749,12 @@
 </translation>
         </message>
         <message>
+            <source>Swarf: in the document: {0}
+</source>
+            <translation>Swarf: im Dokument: {0}
+</translation>
+        </message>
+        <message>
             <source>Swarf: the shape has {0} faces as they were cut: planes, cylinders, cones, spheres, tori
 </source>
             <translation>Swarf: der Körper hat {0} Flächen, wie sie geschnitten wurden: Ebenen, Zylinder, Kegel, Kugeln, Tori
@@ -811,12 +829,20 @@
             <translation>Der Auftrag wurde gelöscht. Sie sehen, wie er war; er kann noch abgespielt werden.</translation>
         </message>
         <message>
+            <source>The most triangles that the mesh may have: it is made with the least error that they suffice for; where that would be more than the error above, no file is written</source>
+            <translation>So viele Dreiecke darf das Netz höchstens haben: es entsteht mit dem kleinsten Fehler, für den sie reichen; wäre er größer als der Fehler oben, wird keine Datei geschrieben</translation>
+        </message>
+        <message>
             <source>The result has not been held against a model yet.</source>
             <translation>Das Ergebnis wurde noch nicht mit einem Modell verglichen.</translation>
         </message>
         <message>
             <source>The stock as it was: nothing was cut here yet.</source>
             <translation>Das Rohteil, wie es war: hier wurde noch nichts geschnitten.</translation>
+        </message>
+        <message>
+            <source>The stock lies between {0} and {1} mm</source>
+            <translation>Das Rohteil liegt zwischen {0} und {1} mm</translation>
         </message>
         <message>
             <source>The tool controller is gone.</source>
@@ -853,6 +879,10 @@
         <message>
             <source>Travel</source>
             <translation>Verfahrweg</translation>
+        </message>
+        <message>
+            <source>Triangles</source>
+            <translation>Dreiecke</translation>
         </message>
         <message>
             <source>Voxel size</source>
@@ -899,12 +929,20 @@
             <translation>etwa {0} Dreiecke, {1}</translation>
         </message>
         <message>
+            <source>any number</source>
+            <translation>beliebig viele</translation>
+        </message>
+        <message>
             <source>as before</source>
             <translation>wie bisher</translation>
         </message>
         <message>
             <source>as the model of the job</source>
             <translation>wie das Modell des Auftrags</translation>
+        </message>
+        <message>
+            <source>at most {0} triangles, {1}</source>
+            <translation>höchstens {0} Dreiecke, {1}</translation>
         </message>
         <message>
             <source>by deviation from the model</source>
@@ -921,6 +959,10 @@
         <message>
             <source>error</source>
             <translation>Fehler</translation>
+        </message>
+        <message>
+            <source>faces as they were cut, exactly; where that cannot be, flat facets as asked for above: {0}</source>
+            <translation>Flächen genau so, wie sie gefräst wurden; wo das nicht geht, ebene Facetten nach den Angaben oben: {0}</translation>
         </message>
         <message>
             <source>follow edges closer than a voxel</source>
@@ -1358,6 +1400,17 @@
         <message>
             <source>Watch the stock of the job being cut, step by step, forward and back</source>
             <translation>Ansehen, wie das Rohteil des Auftrags zerspant wird, Schritt für Schritt, vor und zurück</translation>
+        </message>
+    </context>
+    <context>
+        <name>Swarf_Section</name>
+        <message>
+            <source>Add the wires along which a plane cuts what is left of the stock: to measure, to export as DXF or SVG</source>
+            <translation>Die Linien hinzufügen, in denen eine Ebene den Rest des Rohteils schneidet: zum Messen, zur Ausgabe als DXF oder SVG</translation>
+        </message>
+        <message>
+            <source>Section of the stock</source>
+            <translation>Schnitt durch das Rohteil</translation>
         </message>
     </context>
     <context>
