@@ -47,8 +47,8 @@ class ExportPanel(TaskPanel):
         self.budget.setSingleStep(1000)
         self.budget.setSpecialValueText(translate("Swarf", "any number"))
         self.budget.setToolTip(translate(
-            "Swarf", "The most triangles that the mesh may have: it is made with the least error that they suffice for; "
-            "where that would be more than the error above, no file is written"))
+            "Swarf", "The most triangles that the mesh may have: it is made with the least error that they suffice "
+            "for; where that would be more than the error above, no file is written"))
         layout.addRow(translate("Swarf", "Triangles"), self.budget)
         self.colour = choice()
         for kind, text in ((None, translate("Swarf", "none")), ("operation", translate("Swarf", "by operation")),
