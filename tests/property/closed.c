@@ -72,7 +72,17 @@ static const struct kind {
                   {0.1, 0, 0, 1, 0.03, "field, error 0.1 voxel, volume kept"},
                   {0.1, 1, 0, 1, 0.015, "exact, error 0.1 voxel, volume kept"}};
 
-static void check_stock(const char *name, swarf_stock *stock, const swarf_surface *surface, double voxel)
+/* Kept is a volume to a part in 100 000 of the surface's, where there is room to shift vertices: on cameo, whose
+ * valleys are narrower than a voxel at N = 128, and on some random programs there is too little. Seen were 1.9e-5 and
+ * 1.8e-4 of cameo, 2.4e-4 of the first hundred random programs but the one with 3.6e-3; not kept, 2e-4 to 7e-3. */
+typedef struct keeping {
+    double field, exact; /* greatest part that a kept volume may be off, without and with the surface */
+} keeping;
+
+static const keeping well = {1e-5, 1e-5}, on_cameo = {2.9e-5, 2.7e-4}, at_random = {1.6e-4, 3.6e-4},
+                     at_worst = {5.5e-3, 3.6e-4};
+
+static void check_stock(const char *name, swarf_stock *stock, const swarf_surface *surface, double voxel, keeping most)
 {
     double volume = 0;
     CHECK_OK(swarf_stock_volume(stock, &volume));
@@ -89,25 +99,28 @@ static void check_stock(const char *name, swarf_stock *stock, const swarf_surfac
         if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) continue;
         CHECK(report.intersections_left == 0);
         check_mesh(what, mesh, volume, report.surface_mm3, voxel, kinds[k].apart);
+        if (kinds[k].keep_volume && report.triangles)
+            CHECK_NEAR(swarf_mesh_topology(mesh).volume_mm3 / report.surface_mm3, 1,
+                       kinds[k].exact ? most.exact : most.field);
         swarf_mesh_release(mesh);
     }
 }
 
-static void check_job(const bench_job *job, int resolution)
+static void check_job(const bench_job *job, int resolution, keeping most)
 {
     const double voxel = bench_job_voxel(job, resolution);
     char name[64];
     swarf_surface *surface = NULL;
     swarf_stock *stock = bench_job_cut(job, voxel, &surface);
     snprintf(name, sizeof name, "%s at N = %d", job->name, resolution);
-    check_stock(name, stock, surface, voxel);
+    check_stock(name, stock, surface, voxel, most);
     swarf_surface_release(surface);
     swarf_stock_destroy(stock);
 }
 
 /* The first ones; and the one whose surface passes through a voxel centre, so that
  * vertices about it were rounded onto one line. */
-enum { ON_ONE_LINE = 13 };
+enum { ON_ONE_LINE = 13, WORST_KEPT = 49 };
 
 static void check_random(int count)
 {
@@ -118,7 +131,11 @@ static void check_random(int count)
         swarf_stock *stock = stock_random(&random, voxel, 6, &surface);
         char name[64];
         snprintf(name, sizeof name, "random program %d, voxel %.3f", i, voxel);
-        if (i < count || i == ON_ONE_LINE) check_stock(name, stock, surface, voxel);
+        if (i < count || i == ON_ONE_LINE)
+            check_stock(name, stock, surface, voxel,
+                        i < 2 || i == ON_ONE_LINE ? well
+                        : i == WORST_KEPT         ? at_worst
+                                                  : at_random);
         swarf_surface_release(surface);
         swarf_stock_destroy(stock);
     }
@@ -170,8 +187,8 @@ int main(int count, char **argument)
         return test_end();
     }
     for (int resolution = full ? 256 : 128; resolution <= (full ? 2048 : 128); resolution *= 2) {
-        check_job(bench_job_find("bear"), resolution);
-        check_job(bench_job_find("cameo"), resolution);
+        check_job(bench_job_find("bear"), resolution, well);
+        check_job(bench_job_find("cameo"), resolution, on_cameo);
     }
     return test_end();
 }
