@@ -234,11 +234,9 @@ static void add_four(const contour *work, contour_block *block, const joint *j)
     }
 }
 
-/* The facets of a crossing, if its corners are there: at the border of the layout they may not be, and the mesh will be
- * found open. */
+/* The facets of a crossing whose corners are there. */
 static void join_crossing(const contour *work, contour_block *block, joint *j)
 {
-    if (!find_corners(work, block, j->at, j->axis, j->q)) return;
     block->full_count += 2;
     for (int k = 0; k < 4; k++)
         if (j->q[k].tiled) j->error = (float)(SWARF_TILE_ERROR * work->error_mm);
@@ -264,6 +262,13 @@ static void join_crossing(const contour *work, contour_block *block, joint *j)
     block->within += lost;
 }
 
+/* At the border of the level set there are no cells that corners could lie in. */
+static swarf_status cut_off(void)
+{
+    return swarf_fail(SWARF_ERROR_GEOMETRY, "mesh: the surface is not closed: the level set is cut off at its border "
+                                            "or is no distance field");
+}
+
 swarf_status swarf_contour_join(contour *work, contour_block *block)
 {
     free(block->facets);
@@ -285,6 +290,7 @@ swarf_status swarf_contour_join(contour *work, contour_block *block)
                 for (int k = 0; k < 3; k++) j.voxel[k] = block->ijk[k] + at[k];
                 j.outwards = block->inside[x][at[1]] >> at[2] & 1;
                 j.error = 0;
+                if (!find_corners(work, block, j.at, j.axis, j.q)) return cut_off();
                 join_crossing(work, block, &j);
             }
     swarf_facet *fitting = realloc(block->facets, (block->facet_count ? block->facet_count : 1) * sizeof *fitting);

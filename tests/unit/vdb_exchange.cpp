@@ -187,6 +187,29 @@ void check_meshes()
     check_mesh("cube of another slope", grid, cube, 0.004);
 }
 
+/* A voxel of material without a band: within a leaf it has a mesh, at the leaf's border, beyond which nothing is, its
+ * surface cannot be told. */
+void check_cut_off()
+{
+    for (const int place : {4, 0, 7}) {
+        const auto grid = openvdb::FloatGrid::create(static_cast<float>(3 * voxel));
+        grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
+        grid->setGridClass(openvdb::GRID_LEVEL_SET);
+        grid->tree().setValue(openvdb::Coord(place), static_cast<float>(-0.5 * voxel));
+        write(at("sphere.vdb"), grid);
+        swarf_stock *stock = nullptr;
+        swarf_mesh *mesh = nullptr;
+        const swarf_contour_options options = swarf_contour_options_default();
+        if (!CHECK_OK(swarf_stock_read(at("sphere.vdb").c_str(), nullptr, &stock))) return;
+        if (place == 0)
+            CHECK_FAILS(swarf_mesh_contour(stock, &options, nullptr, &mesh, nullptr), SWARF_ERROR_GEOMETRY, "cut off");
+        else if (CHECK_OK(swarf_mesh_contour(stock, &options, nullptr, &mesh, nullptr)))
+            CHECK(swarf_mesh_topology(mesh).closed && swarf_mesh_triangles(mesh).triangle_count == 12);
+        swarf_mesh_release(mesh);
+        swarf_stock_destroy(stock);
+    }
+}
+
 } // namespace
 
 int main()
@@ -198,6 +221,7 @@ int main()
     check_theirs();
     check_ours();
     check_meshes();
+    check_cut_off();
     check_refusals();
     for (const char *file : {"ours.vdb", "sphere.vdb", "bare.vdb"}) std::remove(at(file).c_str());
     rmdir(name);
