@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "test.h"
+
 static const double pi = 3.14159265358979323846;
 
 static void *grow(void *array, size_t bytes)
@@ -121,4 +123,13 @@ void shape_free(shape *s)
     free(s->xyz);
     free(s->index);
     memset(s, 0, sizeof *s);
+}
+
+swarf_mesh *shape_mesh(shape *s)
+{
+    const swarf_triangles triangles = shape_view(s);
+    swarf_mesh *mesh = NULL;
+    CHECK_OK(swarf_mesh_create(&triangles, &mesh));
+    shape_free(s);
+    return mesh;
 }

@@ -3,7 +3,7 @@
 #ifndef SWARF_TEST_SHAPES_H
 #define SWARF_TEST_SHAPES_H
 
-#include "swarf/base.h"
+#include "swarf/mesh.h"
 
 typedef struct shape {
     float *xyz;
@@ -26,5 +26,7 @@ void shape_ball(shape *s, const double centre[3], double radius, int rings);
 void shape_unshare(shape *s);
 swarf_triangles shape_view(const shape *s);
 void shape_free(shape *s);
+/** As a mesh, owned by the caller; frees the shape. */
+swarf_mesh *shape_mesh(shape *s);
 
 #endif

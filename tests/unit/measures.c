@@ -10,21 +10,12 @@
 
 static const double pi = 3.14159265358979323846;
 
-static swarf_mesh *mesh_of(shape *s)
-{
-    const swarf_triangles triangles = shape_view(s);
-    swarf_mesh *mesh = NULL;
-    CHECK_OK(swarf_mesh_create(&triangles, &mesh));
-    shape_free(s);
-    return mesh;
-}
-
 static void check_box(void)
 {
     const double lo[3] = {101, 202, -303}, hi[3] = {103, 205, -299};
     shape box = {0};
     shape_box(&box, lo, hi);
-    swarf_mesh *mesh = mesh_of(&box);
+    swarf_mesh *mesh = shape_mesh(&box);
     swarf_measures *measures = NULL;
     if (CHECK_OK(swarf_measures_create(mesh, &measures))) {
         size_t count;
@@ -67,7 +58,7 @@ static void check_hollow(void)
     shape_flip(&s, outside);
     const size_t hollow = s.triangles;
     shape_cylinder(&s, base, 1, 5, 200);
-    swarf_mesh *mesh = mesh_of(&s);
+    swarf_mesh *mesh = shape_mesh(&s);
     swarf_measures *measures = NULL;
     if (!CHECK_OK(swarf_measures_create(mesh, &measures))) return;
     size_t count;
@@ -156,7 +147,7 @@ static void check_sections(void)
     const size_t outside = s.triangles;
     shape_ball(&s, centre, 2, 60);
     shape_flip(&s, outside);
-    swarf_mesh *mesh = mesh_of(&s);
+    swarf_mesh *mesh = shape_mesh(&s);
     swarf_outline *section = NULL;
     for (double z = -2.51; z < 3; z += 1.003) {
         const double point[3] = {7, 7, z};
@@ -186,7 +177,7 @@ static void check_sections(void)
     shape box = {0};
     shape_box(&box, lo, hi);
     box.triangles = 12;
-    mesh = mesh_of(&box);
+    mesh = shape_mesh(&box);
     for (int i = 0; i < 2; i++) {
         if (!CHECK_OK(swarf_outline_create(mesh, i ? bottom : middle, up, &section))) continue;
         size_t count = 0;

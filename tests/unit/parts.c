@@ -10,15 +10,6 @@
 
 static const double pi = 3.14159265358979323846;
 
-static swarf_mesh *mesh_of(shape *s)
-{
-    const swarf_triangles triangles = shape_view(s);
-    swarf_mesh *mesh = NULL;
-    CHECK_OK(swarf_mesh_create(&triangles, &mesh));
-    shape_free(s);
-    return mesh;
-}
-
 static void check_closed(const swarf_mesh *mesh)
 {
     const swarf_topology t = swarf_mesh_topology(mesh);
@@ -56,7 +47,7 @@ static void check_splits(void)
     const double lo[3] = {1, 2, 3}, hi[3] = {11, 8, 7};
     shape s = {0};
     shape_box(&s, lo, hi);
-    swarf_mesh *box = mesh_of(&s);
+    swarf_mesh *box = shape_mesh(&s);
     check_split(box, (double[]){0, 0, 4.5}, (double[]){0, 0, 2}, 10 * 6 * 1.5);
     check_split(box, (double[]){0, 0, 4.5}, (double[]){0, 0, -1}, 10 * 6 * 2.5);
     check_split(box, (double[]){6, 5, 5}, (double[]){1, 0.3, -0.2}, 120);
@@ -77,7 +68,7 @@ static void check_splits(void)
     shape_flip(&s, outside);
     shape_ball(&s, centre, 1, 60);
     shape_cylinder(&s, base, 1, 5, 200);
-    swarf_mesh *mesh = mesh_of(&s);
+    swarf_mesh *mesh = shape_mesh(&s);
     const double balls = 4 * pi / 3 * (27 - 8 + 1);
     swarf_mesh *below = NULL, *above = NULL;
     if (CHECK_OK(swarf_mesh_split(mesh, centre, (double[]){1, 0, 0}, &below, &above))) {
@@ -160,7 +151,7 @@ static void check_errors(void)
     shape s = {0};
     shape_box(&s, (double[]){0, 0, 0}, (double[]){1, 1, 1});
     s.triangles--;
-    swarf_mesh *open = mesh_of(&s), *below = NULL, *above = NULL;
+    swarf_mesh *open = shape_mesh(&s), *below = NULL, *above = NULL;
     CHECK_FAILS(swarf_mesh_split(open, (double[]){0, 0, 0.5}, (double[]){0, 0, 1}, &below, &above),
                 SWARF_ERROR_GEOMETRY, "only closed meshes");
     CHECK_FAILS(swarf_mesh_split(open, (double[]){0, 0, NAN}, (double[]){0, 0, 1}, &below, &above),
@@ -171,7 +162,7 @@ static void check_errors(void)
     swarf_mesh_release(open);
     float thick[12];
     shape_box(&s, (double[]){0, 0, -2e20}, (double[]){1, 1, 1}); /* rays that start there would end the process */
-    swarf_mesh *far = mesh_of(&s);
+    swarf_mesh *far = shape_mesh(&s);
     CHECK_FAILS(swarf_mesh_thickness(far, NULL, thick), SWARF_ERROR_GEOMETRY, "up to 2e+20 mm");
     swarf_mesh_release(far);
 }
@@ -190,7 +181,7 @@ static void check_thickness(void)
     /* a plate, far from the origin: its three thicknesses */
     shape s = {0};
     shape_box(&s, (double[]){500, 500, 500}, (double[]){530, 520, 501.5});
-    swarf_mesh *mesh = mesh_of(&s);
+    swarf_mesh *mesh = shape_mesh(&s);
     float *found = thickness_of(mesh);
     const swarf_triangles t = swarf_mesh_triangles(mesh);
     for (size_t i = 0; i < t.triangle_count; i++) {
@@ -213,7 +204,7 @@ static void check_thickness(void)
     const size_t outside = s.triangles;
     shape_cylinder(&s, (double[]){0, 0, 5}, 8, 20, sides);
     shape_flip(&s, outside);
-    mesh = mesh_of(&s);
+    mesh = shape_mesh(&s);
     found = thickness_of(mesh);
     float least = INFINITY;
     for (size_t i = 0; i < swarf_mesh_triangles(mesh).triangle_count; i++) least = fminf(least, found[i]);
@@ -231,7 +222,7 @@ static void check_thickness(void)
     }
     const size_t wedge[8][3] = {{0, 1, 2}, {3, 5, 4}, {0, 4, 1}, {0, 3, 4}, {1, 4, 5}, {1, 5, 2}, {0, 2, 5}, {0, 5, 3}};
     for (int i = 0; i < 8; i++) shape_triangle(&s, wedge[i][0], wedge[i][1], wedge[i][2]);
-    mesh = mesh_of(&s);
+    mesh = shape_mesh(&s);
     CHECK(swarf_mesh_topology(mesh).closed && swarf_mesh_topology(mesh).volume_mm3 > 0);
     found = thickness_of(mesh);
     /* from near the corner at x = 0: the corners at x = 10 weigh a hundredth each */
@@ -263,7 +254,7 @@ static void check_draft(void)
     shape_triangle(&s, 0, 3, 2);
     shape_triangle(&s, top, top + 1, top + 2);
     shape_triangle(&s, top, top + 2, top + 3);
-    swarf_mesh *mesh = mesh_of(&s);
+    swarf_mesh *mesh = shape_mesh(&s);
     CHECK(swarf_mesh_topology(mesh).closed && swarf_mesh_topology(mesh).volume_mm3 > 0);
     float *found = thickness_of(mesh), least = INFINITY;
     for (size_t i = 0; i < swarf_mesh_triangles(mesh).triangle_count; i++) least = fminf(least, found[i]);
