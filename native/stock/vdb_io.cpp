@@ -120,7 +120,7 @@ openvdb::FloatGrid::Ptr read_grid(FILE *file, const swarf_vdb_place &place, swar
     openvdb::io::setStreamMetadataPtr(stream, settings, /*transfer=*/false);
     openvdb::io::setVersion(stream, {place.library_major, place.library_minor}, place.format);
     openvdb::io::setDataCompression(stream, place.compression);
-    const auto grid = openvdb::FloatGrid::create();
+    openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create();
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
     stream.seekg(static_cast<std::streamoff>(place.transform));
     grid->readTransform(stream);
@@ -179,7 +179,7 @@ swarf_status check_extent(const openvdb::FloatGrid &grid, const char *path, doub
 {
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     if (box.empty()) return SWARF_OK;
-    const openvdb::Vec3d middle = grid.indexToWorld(box.getCenter());
+    const openvdb::Vec3d middle = grid.indexToWorld(0.5 * (box.min().asVec3d() + box.max().asVec3d()));
     swarf_box extent;
     for (int k = 0; k < 3; k++) {
         if (!(std::fabs(middle[k]) <= farthest))
