@@ -7,6 +7,14 @@
 
 #include <math.h>
 
+int count_read(PyObject *object, void *out)
+{
+    const Py_ssize_t value = PyNumber_AsSsize_t(object, NULL);
+    if (value == -1 && PyErr_Occurred()) return 0;
+    *(Py_ssize_t *)out = value;
+    return 1;
+}
+
 /* ---- views ---- */
 
 typedef struct view_object {

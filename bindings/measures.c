@@ -148,13 +148,15 @@ PyObject *mesh_keep_shells(PyObject *self, PyObject *list)
     if (!numbers) return PyErr_NoMemory();
     for (Py_ssize_t i = 0; i < count; i++) {
         PyObject *item = PySequence_GetItem(list, i);
-        const unsigned long value = item ? PyLong_AsUnsignedLong(item) : 0;
+        Py_ssize_t value = 0;
+        const int is_read = item && count_read(item, &value);
+        if (is_read && value < 0) PyErr_Format(PyExc_ValueError, "shells: %R is not the place of one", item);
         Py_XDECREF(item);
-        if (PyErr_Occurred()) {
+        if (!is_read || value < 0) {
             PyMem_Free(numbers);
             return NULL;
         }
-        numbers[i] = value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
+        numbers[i] = (size_t)value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
     }
     PyObject *result = NULL;
     native_call call;

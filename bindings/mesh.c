@@ -115,8 +115,8 @@ static PyObject *mesh_from_stock(PyObject *type, PyObject *args, PyObject *keywo
     int fine = 0, keep_volume = 0;
     Py_ssize_t budget = 0;
     swarf_contour_options options;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$nOOppO:from_stock", names, state->stock, &stock, &error,
-                                     &budget, &surface, &moves, &fine, &keep_volume, &progress) ||
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|d$O&OOppO:from_stock", names, state->stock, &stock, &error,
+                                     count_read, &budget, &surface, &moves, &fine, &keep_volume, &progress) ||
         read_options(state, error, surface, moves, fine, keep_volume, &options))
         return NULL;
     if (budget < 0) return PyErr_Format(PyExc_ValueError, "budget: %zd is not a number of triangles", budget);
@@ -158,9 +158,9 @@ static PyObject *mesh_stream(PyObject *type, PyObject *args, PyObject *keywords)
     int fine = 0, keep_volume = 0;
     Py_ssize_t limit = 0;
     swarf_contour_options options;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O&|d$OOppnO:stream", names, state->stock, &stock,
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O&|d$OOppO&O:stream", names, state->stock, &stock,
                                      PyUnicode_FSConverter, &path, &error, &surface, &moves, &fine, &keep_volume,
-                                     &limit, &progress))
+                                     count_read, &limit, &progress))
         return NULL;
     int bad = read_options(state, error, surface, moves, fine, keep_volume, &options);
     if (!bad && limit < 0) {

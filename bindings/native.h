@@ -91,6 +91,10 @@ PyObject *call_write(module_state *state, void *context, PyObject *path, PyObjec
 
 /* ---- buffer.c ---- */
 
+/** A converter for PyArg: a whole number to a Py_ssize_t, one beyond its range to the end of that. 0 with an exception.
+ */
+int count_read(PyObject *object, void *out);
+
 extern PyType_Spec buffer_view_spec;
 
 /** Three finite numbers of a sequence. 0, or -1 with an exception that begins with `name`. */

@@ -162,8 +162,7 @@ int program_range(program_object *program, Py_ssize_t first, PyObject *count, si
     }
     Py_ssize_t wanted = moves - first;
     if (count != Py_None) {
-        wanted = PyLong_AsSsize_t(count);
-        if (wanted == -1 && PyErr_Occurred()) return -1;
+        if (!count_read(count, &wanted)) return -1;
         if (wanted < 0 || wanted > moves - first) {
             PyErr_Format(PyExc_ValueError, "count: %zd is not in 0 .. %zd, the moves from there", wanted,
                          moves - first);

@@ -26,6 +26,13 @@ def make_parser(commands: dict[str, ModuleType]) -> Parser:
     return parser
 
 
+def check_words(words: Sequence[str]) -> None:
+    """ValueError for a file or a value without a letter, as of a script's variable that was never set."""
+    for before, word in zip(("swarf", *words), words):
+        if not word or (word.startswith("--") and word.endswith("=")):
+            raise ValueError(f"nothing stands after {before if not word else word}: a name or a value is wanted there")
+
+
 def interrupt_by_signals() -> None:
     """Let SIGTERM, Ctrl-C and a terminal that is closed end the work in order: by their defaults they would leave
     half-written files behind."""
@@ -56,7 +63,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     open_streams()
     try:
         commands = collect()
-        arguments = make_parser(commands).parse_args(argv)
+        words = sys.argv[1:] if argv is None else argv
+        check_words(words)
+        arguments = make_parser(commands).parse_args(words)
         interrupt_by_signals()
         return int(commands[arguments.command].run(arguments))
     except OSError as error:

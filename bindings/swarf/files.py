@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Text files that are whole or not there, JSON files that are read, suffixes."""
+"""Text files that are whole or not there, JSON files that are read, suffixes, whose errors are whose."""
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import tempfile
-from typing import Any, Optional
+from typing import Any, Iterator, Optional
+
+from ._native import GeometryError
 
 
 def read_json(path: str) -> Any:
@@ -20,6 +23,15 @@ def read_json(path: str) -> Any:
         return json.loads(text)
     except (ValueError, RecursionError) as error:  # JSONDecodeError, what is no UTF-8, what is nested too deep
         raise ValueError(f"{path}: is no JSON: {error}") from None
+
+
+@contextlib.contextmanager
+def naming(path: str) -> Iterator[None]:
+    """A GeometryError in here begins with the file, or what else it is, whose shape is to blame."""
+    try:
+        yield
+    except GeometryError as error:
+        raise GeometryError(f"{path}: {error}") from None
 
 
 def check_suffix(path: Optional[str], what: str, suffix: str) -> None:

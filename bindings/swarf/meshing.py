@@ -9,7 +9,7 @@ import struct
 from typing import Optional, Sequence
 
 from ._native import Contour, Mesh
-from .simulate import MESH_ERROR_VOXELS
+from .simulate import MESH_ERROR_VOXELS, MESH_SUFFIXES
 from .wording import unseen_note
 
 #: How near a kept volume is meant to come, of it; farther away is told.
@@ -26,6 +26,17 @@ def add_options(command: argparse.ArgumentParser, of: str = "") -> None:
     command.add_argument("--keep-volume", action="store_true",
                          help=f"{of}shift vertices, by a fifth of the error at most, until the volume is that of the "
                          "surface that the mesh stands for; what is thinner than a voxel is in no mesh")
+
+
+def check_meant(arguments: argparse.Namespace, made: bool, of_error: bool) -> None:
+    """ValueError where an option of meshes would have nothing to do: where none is ``made``, or for ``--error`` nothing
+    else that has one (``of_error``)."""
+    given = [option for option, value, meant in (
+        ("--error", arguments.error is not None, made or of_error), ("--budget", arguments.budget, made),
+        ("--fine", arguments.fine, made), ("--keep-volume", arguments.keep_volume, made)) if value and not meant]
+    if given:
+        raise ValueError(f"{' and '.join(given)}: no mesh is made; give --output with {', '.join(MESH_SUFFIXES)} "
+                         "or --report")
 
 
 def notes(made: Contour, files: Sequence[str], budget: int, error: float, kept_mm3: Optional[float]) -> list[str]:

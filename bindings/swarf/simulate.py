@@ -16,10 +16,13 @@ from .progress import Stages
 from .stocks import DEFAULT_RESOLUTION, make_first, make_stock, stock_box, voxel_of
 
 __all__ = [
-    "COLOURED_SUFFIXES", "DEFAULT_RESOLUTION", "MESH_ERROR_VOXELS", "MESH_SUFFIXES", "OUTPUT_SUFFIXES", "Progress",
-    "Result", "STOCK_SUFFIXES", "check_coloured", "check_mesh", "make_stock", "mesh_error",
+    "COLOURED_SUFFIXES", "DEFAULT_RESOLUTION", "MESH_ERROR_VOXELS", "MESH_SOURCES", "MESH_SUFFIXES", "OUTPUT_SUFFIXES",
+    "Progress", "Result", "STOCK_SUFFIXES", "check_coloured", "check_mesh", "make_stock", "mesh_error",
     "output_suffix", "simulate", "stock_box", "voxel_of",
 ]
+
+#: What meshes are read from.
+MESH_SOURCES = (".stl", ".ply", ".obj")
 
 #: What an output file can be, by its suffix.
 COLOURED_SUFFIXES = (".ply", ".obj", ".3mf", ".glb")

@@ -7,7 +7,7 @@ import os
 from typing import Any, Sequence
 
 from ._native import Cutter, Error, Mesh
-from .simulate import MESH_SUFFIXES, STOCK_SUFFIXES
+from .simulate import MESH_SOURCES, STOCK_SUFFIXES
 
 STOCK_HELP = "box:X0,Y0,Z0,X1,Y1,Z1, cylinder:X,Y,Z,R,L (axis +Z) or cylinder:X,Y,Z,R,AX,AY,AZ, or a FILE"
 
@@ -43,11 +43,11 @@ def stock(spec: str) -> dict[str, Any]:
             raise ValueError(f"stock {spec!r}: radius and length must be above 0")
         return {"kind": "cylinder", "base": tuple(values[:3]), "axis": axis, "radius": values[3]}
     suffix = os.path.splitext(spec)[1].lower()
-    if suffix in MESH_SUFFIXES:
+    if suffix in MESH_SOURCES:
         return {"kind": "mesh", "mesh": Mesh.read(spec), "path": spec}
     if suffix in STOCK_SUFFIXES:
         return {"kind": "vdb", "path": spec}
-    raise ValueError(f"stock {spec!r}: wanted {STOCK_HELP} ({', '.join(MESH_SUFFIXES + STOCK_SUFFIXES)})")
+    raise ValueError(f"stock {spec!r}: wanted {STOCK_HELP} ({', '.join(MESH_SOURCES + STOCK_SUFFIXES)})")
 
 
 def tool(spec: str) -> tuple[int, Cutter, str, int]:

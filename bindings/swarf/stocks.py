@@ -9,6 +9,7 @@ from typing import Any, Callable, Optional
 
 from ._native import Cutter, GeometryError, Mesh, Program, Simulation, Stock, Surface
 from .aliases import Box
+from .files import naming
 from .job import Job
 from .placement import IDENTITY, Rows, box_of, direction, is_quarter, point, rows_of
 from .progress import Report, share
@@ -132,10 +133,8 @@ def _make_shape(description: dict[str, Any], voxel: float, progress: Report) -> 
         mesh = description["mesh"]
     if rows is not None:
         mesh = mesh.placed(rows)
-    try:
+    with naming(description.get("path", "stock")):
         return Stock.from_mesh(mesh, voxel, progress=progress)
-    except GeometryError as error:  # which of the job's meshes, and of which file
-        raise GeometryError(f"{description.get('path', 'stock')}: {error}") from None
 
 
 def _box_left(stock: Stock, surface: Optional[Surface], what: str, progress: Report) -> Box:

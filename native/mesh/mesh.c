@@ -138,7 +138,9 @@ static swarf_status read_any(const char *text, size_t length, const char *path, 
     if (strcmp(suffix, "ply") == 0)
         return swarf_fail(SWARF_ERROR_FORMAT, "%s:1: a PLY file starts with the word \"ply\"", path);
     if (memchr(text, 0, length))
-        return swarf_fail(SWARF_ERROR_FORMAT, "%s: neither STL, PLY nor OBJ (binary data of another kind)", path);
+        return swarf_fail(SWARF_ERROR_FORMAT,
+                          "%s: neither STL, PLY nor OBJ, of which meshes are read; 3MF and glTF are only written",
+                          path);
     return swarf_obj_read(text, length, path, data);
 }
 

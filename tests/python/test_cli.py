@@ -292,6 +292,10 @@ def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, prog
                                        "vertex 0 1 0\nendloop\nendfacet\nendsolid\n")
     part = str(tmp_path / "part-1.stl")
     swarf.Mesh.from_stock(swarf.Stock.box((0, 0, -10), (60, 40, 0), 1.0)).write(part)
+    part3 = str(tmp_path / "part.3mf")
+    swarf.Mesh.read(part).write(part3)
+    swarf.Mesh.read(part).write(tmp_path / "part.glb")
+    (tmp_path / "far.obj").write_text("v 0 0 0\nv 9e8 0 0\nv 0 9e8 0\nv 0 0 9e8\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
     size = os.path.getsize(part)
     cut = [str(program), "--stock", STOCK, "--tool", TOOL, "--voxel", "2"]
     held = ["verify", *cut, "--design", part]
@@ -308,6 +312,20 @@ def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, prog
             ([*held, "--accept", "/proc/self/mem"], "swarf: error: /proc/self/mem: "),
             (["verify", *cut, "--design", str(tmp_path / "open.stl")], "design: mesh: not closed"),
             ([*held, "--fixture", part, "--fixture", str(tmp_path / "open.stl")], "fixture 2: mesh: not closed"),
+            (["mesh", str(tmp_path / "open.stl"), "--split-at", "z=0", "--output", str(tmp_path / "a.stl")],
+             "open.stl: mesh: only closed meshes can be split; 3 edges are open"),
+            (["mesh", str(tmp_path / "open.stl"), "--split", "--output", str(tmp_path / "a.stl")],
+             "open.stl: none of its pieces is closed"),
+            (["mesh", str(tmp_path / "open.stl"), "--section", "z=0", "--output", str(tmp_path / "a.svg")],
+             "open.stl: sections are of closed meshes; 3 edges are open"),
+            (["mesh", str(tmp_path / "far.obj"), "--thickness", "--measure"], "far.obj: mesh: coordinates up to 9e+08"),
+            (["mesh", part3, "--measure"], "part.3mf: neither STL, PLY nor OBJ, of which meshes are read; 3MF "),
+            (["mesh", str(tmp_path / "part.glb"), "--measure"], "3MF and glTF are only written"),
+            (["simulate", *cut[:2], part3, *cut[3:]], "part.3mf': wanted box:"),
+            (["mesh", "", "--measure"], "nothing stands after mesh: a name or a value"),
+            (["mesh", part, "--output", ""], "nothing stands after --output: "),
+            (["simulate", *cut, "--then", ""], "nothing stands after --then: "),
+            (["simulate", *cut, "--output="], "nothing stands after --output=: "),
             ([*held, "--allowance", "1e300"], "an allowance of 1e+300 mm; -1e+06 to 1e+06 are possible"),
             ([*held, "--tolerance", "1e300"], "a tolerance of 1e+300 mm"),
             ([*held, "--clearance", "1e300"], "a clearance of 1e+300 mm; 0 to 1000 are possible"),
@@ -566,6 +584,25 @@ def test_a_budget_of_triangles_is_met_or_what_is_possible_is_said(swarf_run, gro
 ])
 def test_errors_and_budgets_that_cannot_be(refused, program, words, says):
     refused(program, "--stock", STOCK, "--tool", TOOL, "--output", "s.stl", *words, says=[says])
+
+
+@pytest.mark.parametrize("words, says", [
+    (("--fine",), "--fine: no mesh is made; give --output with .stl, .ply"),
+    (("--keep-volume", "--output", "s.vdb"), "--keep-volume: no mesh is made"),
+    (("--error", "0.1", "--picture", "s.png"), "--error: no mesh is made"),
+    (("--error", "0.1", "--budget", "9"), "--error and --budget: no mesh is made"),
+    (("--error", "0.1", "--budget", "9", "--output", "s.step"), "error: --budget: no mesh is made"),
+])
+def test_options_of_meshes_without_one_are_refused(refused, program, words, says):
+    refused(program, "--stock", STOCK, "--tool", TOOL, "--voxel", "0.005", *words, says=[says])
+
+
+def test_options_of_meshes_are_for_reports_and_errors_for_solids(swarf_run, groove, tmp_path):
+    status, _, err = swarf_run(*groove, "--error", "0.5", "--budget", "999", "--fine", "--report", "r.json")
+    assert (status, err) == (0, "")
+    assert json.loads((tmp_path / "r.json").read_text())["mesh"]["triangles"] <= 999
+    status, _, err = swarf_run(*groove, "--error", "0.5", "--output", "s.step")
+    assert (status, err) == (0, "")
 
 
 def test_a_stock_without_its_loose_pieces_does_not_have_the_error_of_the_mesh(swarf_run, groove, tmp_path):

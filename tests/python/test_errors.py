@@ -112,6 +112,23 @@ def test_program_arguments(slot, stock, cutter):
     slot.add_line((0, 0, 0))  # the refused calls have left it open
 
 
+def test_numbers_beyond_those_of_the_machine(stock, tmp_path):
+    mesh = swarf.Mesh.from_stock(stock)
+    for shell in (-1, -2 ** 70, 2 ** 70):
+        with pytest.raises(ValueError, match="shell"):
+            mesh.keep_shells([shell])
+    assert mesh.keep_shells([0]).triangle_count == mesh.triangle_count
+    counts = {swarf.Mesh.from_stock(stock, 0.1, budget=budget).triangle_count for budget in (2 ** 30, 2 ** 70)}
+    assert len(counts) == 1  # more than there are, whatever the number
+    assert swarf.Mesh.stream(stock, tmp_path / "s.stl", memory_limit=2 ** 70).triangles == mesh.triangle_count
+    with pytest.raises(ValueError, match="not a number of triangles"):
+        swarf.Mesh.from_stock(stock, 0.1, budget=-2 ** 70)
+    with pytest.raises(ValueError, match="not a number of bytes"):
+        swarf.Mesh.stream(stock, tmp_path / "s.stl", memory_limit=-2 ** 70)
+    with pytest.raises(TypeError):
+        swarf.Mesh.from_stock(stock, 0.1, budget=1.5)
+
+
 def test_no_stock_out_of_nothing():
     for kind in (swarf.Stock, swarf.Simulation):
         with pytest.raises(TypeError):

@@ -3,6 +3,7 @@
 import importlib
 import json
 import math
+import xml.etree.ElementTree as xml
 
 import pytest
 
@@ -71,6 +72,74 @@ def test_split(done, tmp_path, capsys):
     capsys.readouterr()
     assert main(["mesh", str(tmp_path / "cut.ply"), "--measure", "--split-at", "z=1"]) == 2
     assert "give --output" in capsys.readouterr().err
+
+
+def area_of(curve):
+    """Within a closed curve, counter-clockwise above 0."""
+    return sum(a * d - b * c for (a, b), (c, d) in zip(curve, (*curve[1:], curve[0]))) / 2
+
+
+def curves_of(path):
+    """The curves in a drawing, read as the formats say."""
+    text = path.read_text()
+    if path.suffix == ".svg":
+        root = xml.fromstring(text)
+        box, size = [float(word) for word in root.get("viewBox").split()], (root.get("width"), root.get("height"))
+        assert size == tuple(f"{edge:.6f}mm" for edge in box[2:])  # a unit of the drawing is a millimetre
+        (drawn,) = root
+        found = [[tuple(map(float, word[word[0] in "ML":].split(","))) for word in part.split()]
+                 for part in drawn.get("d").split(" Z")[:-1]]
+        assert all(box[k] < corner[k] < box[k] + box[2 + k] for curve in found for corner in curve for k in (0, 1))
+        return [[(x, -y) for x, y in curve] for curve in found]
+    words = text.splitlines()
+    found, pairs = [], list(zip(map(int, words[::2]), words[1::2]))
+    assert pairs[-1] == (0, "EOF")
+    for number, pair in enumerate(pairs):
+        if pair == (0, "POLYLINE"):
+            assert (70, "1") in pairs[number:number + 4]  # closed
+            found.append([])
+        elif pair == (0, "VERTEX"):
+            values = dict(pairs[number + 1:number + 5])
+            assert float(values[30]) == 0
+            found[-1].append((float(values[10]), float(values[20])))
+    return found
+
+
+@pytest.mark.parametrize("suffix", [".svg", ".dxf"])
+def test_sections(suffix, tmp_path, capsys):
+    """A block with a hollow in it: areas in closed form, in the coordinates of the part."""
+    outer, inner = ((2, 3, 4), (12, 8, 7)), ((3, 5, 4.5), (10, 6, 6))
+    boxes = [stocks._box_mesh(box) for box in (outer, inner)]
+    corners = [corner for box in boxes for corner in box.vertices.tolist()]
+    hollow = swarf.Mesh(corners, boxes[0].triangles.tolist()
+                        + [[8 + c, 8 + b, 8 + a] for a, b, c in boxes[1].triangles.tolist()])
+    hollow.write(tmp_path / "hollow.ply")
+    words = ["mesh", str(tmp_path / "hollow.ply")]
+    drawn = tmp_path / ("cut" + suffix)
+    for plane, box, area in (("z=5", ((2, 3), (12, 8)), 10 * 5 - 7 * 1), ("y=5.5", ((2, 4), (12, 7)), 10 * 3 - 7 * 1.5),
+                             ("x=11", ((3, 4), (8, 7)), 5 * 3)):
+        assert main([*words, "--section", plane, "--output", str(drawn)]) == 0
+        curves = curves_of(drawn)
+        assert len(curves) == (1 if plane == "x=11" else 2)
+        assert abs(sum(map(area_of, curves))) == pytest.approx(area, abs=1e-4)
+        for k in (0, 1):
+            assert min(corner[k] for curve in curves for corner in curve) == pytest.approx(box[0][k], abs=1e-5)
+            assert max(corner[k] for curve in curves for corner in curve) == pytest.approx(box[1][k], abs=1e-5)
+    # a slope of 3 in 4 from an edge of the bottom on, seen against its normal: 5 long up to the top, 1 to 8 of the
+    # hollow across, 2 / 0.8 to 1.5 / 0.6 + 5 / 6 of it along
+    assert main([*words, "--section", "2,3,4,0,-0.6,0.8", "--output", str(drawn), "--output",
+                 str(tmp_path / "copy.stl")]) == 0
+    found = [(area_of(curve), [tuple(round(pick(corner[k] for corner in curve), 4) for k in (0, 1))
+                               for pick in (min, max)]) for curve in curves_of(drawn)]
+    assert sorted(found) == [(pytest.approx(-7 * 5 / 6, abs=1e-4), [(1, 2.5), (8, 3.3333)]),
+                             (pytest.approx(50, abs=1e-4), [(0, 0), (10, 5)])]
+    both = tmp_path / ("both" + suffix)
+    assert main([*words, "--section", "z=5", "--section", "x=11", "--output", str(both)]) == 0
+    assert [len(curves_of(tmp_path / f"both-{number}{suffix}")) for number in (1, 2)] == [2, 1] and not both.exists()
+    assert main([*words, "--section", "z=5", "--section", "z=9", "--output", str(tmp_path / f"none{suffix}")]) == 2
+    assert "hollow.ply: section 2 does not cut it" in capsys.readouterr().err
+    assert not list(tmp_path.glob("none*"))
+    assert swarf.Mesh.read(tmp_path / "copy.stl").volume == pytest.approx(hollow.volume)
 
 
 def test_thickness(done, tmp_path, capsys):

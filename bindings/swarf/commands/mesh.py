@@ -7,8 +7,9 @@ import json
 import os
 from typing import Any, Optional
 
-from .. import _native, colours, meshing, solids
+from .. import _native, colours, drawing, meshing, solids
 from ..console import DONE, FINDINGS, check_outputs, say, tell
+from ..files import naming
 from ..parts import PLANE_HELP, parse_plane, pieces_of, thinnest
 from ..progress import Bar
 from ..simulate import MESH_SUFFIXES, check_coloured, check_mesh, mesh_error, streams
@@ -26,12 +27,16 @@ def add(subparsers: Any) -> None:
     meshing.add_options(command)
     command.add_argument("--output", metavar="FILE", action="append", default=[],
                          help=f"write the mesh: {' '.join(MESH_SUFFIXES)}, or .step, of facets (repeatable); one that "
-                         "does not fit into memory only to .stl")
+                         "does not fit into memory only to .stl; or its sections: .svg .dxf")
     command.add_argument("--split", action="store_true",
                          help="write every piece that hangs together to a file of its own: FILE-1, FILE-2 ...")
     command.add_argument("--split-at", metavar="PLANE", type=_plane, action="append", default=[],
                          help=f"cut it by a plane, each side closed by caps (repeatable); {PLANE_HELP}. Each side goes "
                          "to a file of its own, or each piece of each side with --split")
+    command.add_argument("--section", metavar="PLANE", type=_plane, action="append", default=[],
+                         help="write the curves along which a plane cuts it, to the .svg and .dxf files (repeatable, "
+                         "then FILE-1, FILE-2 ...), in mm: across x, y or z with the other two coordinates, else seen "
+                         "against the normal from the point")
     command.add_argument("--thickness", action="store_true",
                          help="colour the files by wall thickness, and tell the least with --measure")
     command.add_argument("--measure", action="store_true", help="print measures of the whole and its shells as JSON")
@@ -90,6 +95,25 @@ def is_streamed(arguments: argparse.Namespace) -> bool:
                                               or arguments.measure or arguments.budget)
 
 
+def is_drawing(path: str) -> bool:
+    """Whether a file is one of section curves, by its suffix."""
+    return os.path.splitext(path)[1].lower() in drawing.SUFFIXES
+
+
+def draw(mesh: _native.Mesh, arguments: argparse.Namespace) -> list[tuple[str, list[list[drawing.Point]]]]:
+    """Files of sections, each with its curves. ValueError where there are none."""
+    outputs = [path for path in arguments.output if is_drawing(path)]
+    if outputs and not mesh.closed:
+        raise ValueError(f"{arguments.input}: sections are of closed meshes; {mesh.boundary_edges} edges are open")
+    drawn = []
+    for number, (point, normal) in enumerate(arguments.section, 1):
+        curves = drawing.flat(mesh.section(point, normal), point, normal)
+        if not curves:
+            raise ValueError(f"{arguments.input}: section {number} does not cut it")
+        drawn += [(numbered(path, number) if len(arguments.section) > 1 else path, curves) for path in outputs]
+    return drawn
+
+
 def is_solid(path: str) -> bool:
     """Whether a file is one of solids, by its suffix."""
     return os.path.splitext(path)[1].lower() in solids.SUFFIXES
@@ -98,11 +122,13 @@ def is_solid(path: str) -> bool:
 def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> list[str]:
     """The mesh, or its parts, to all files; returns those of solids, of many parts the first and the last."""
     several = arguments.split or bool(arguments.split_at)
-    outputs = sorted(arguments.output, key=is_solid)  # solids last: they may be refused
+    meshes = [path for path in arguments.output if not is_drawing(path)]
+    outputs = sorted(meshes, key=is_solid)  # solids last: they may be refused
     parts = parts_of(mesh, arguments)
     if several:
         if not parts:
-            raise ValueError(f"{arguments.input}: nothing is left of it, so there is no piece to write")
+            why = "none of its pieces is closed" if mesh.triangle_count else "nothing is left of it"
+            raise ValueError(f"{arguments.input}: {why}, so there is no piece to write")
         check_outputs([numbered(path, number) for path in outputs for number in range(1, len(parts) + 1)],
                       [arguments.input])
     for number, part in enumerate(parts, 1):
@@ -133,22 +159,41 @@ def in_a_row(path: str, count: int) -> str:
     return numbered(path, 1) if count == 1 else f"{numbered(path, 1)} to {numbered(path, count)}"
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Mesh, write, measure."""
+def check(arguments: argparse.Namespace) -> None:
+    """ValueError, OSError where what is asked for cannot be, as far as that is known before the work."""
     if abs(arguments.threads) >= 1 << 31:
         raise ValueError(f"threads: {arguments.threads} is not in 0 .. 1024 (0: one per core)")
     check_mesh(arguments.error, arguments.budget)
     if not (arguments.output or arguments.measure):
         raise ValueError("nothing to do: give --output FILE, --measure or both")
-    if (arguments.split or arguments.split_at) and not arguments.output:
-        raise ValueError("--split and --split-at write files: give --output FILE")
+    known = MESH_SUFFIXES + solids.SUFFIXES + drawing.SUFFIXES
     for path in arguments.output:
-        if os.path.splitext(path)[1].lower() not in MESH_SUFFIXES + solids.SUFFIXES:
-            raise ValueError(f"{path}: unknown suffix; a mesh is {', '.join(MESH_SUFFIXES + solids.SUFFIXES)}")
+        if os.path.splitext(path)[1].lower() not in known:
+            raise ValueError(f"{path}: unknown suffix; an output is {', '.join(known)}")
+    drawings = [path for path in arguments.output if is_drawing(path)]
+    if (arguments.split or arguments.split_at) and len(drawings) == len(arguments.output):
+        raise ValueError("--split and --split-at write meshes: give --output FILE")
+    if bool(arguments.section) != bool(drawings):
+        raise ValueError(f"{drawings[0]}: a drawing is of a section: give --section PLANE" if drawings else
+                         f"--section: no --output is a drawing, which is {', '.join(drawing.SUFFIXES)}")
     if arguments.thickness and not arguments.measure:
         check_coloured(arguments.output, "--thickness")
-    _native.set_threads(arguments.threads)
     check_outputs(arguments.output, [arguments.input])
+    if len(arguments.section) > 1:
+        numbers = range(1, len(arguments.section) + 1)
+        check_outputs([numbered(path, number) for path in drawings for number in numbers], [arguments.input])
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Mesh, write, measure."""
+    check(arguments)
+    _native.set_threads(arguments.threads)
+    with naming(arguments.input):
+        return make(arguments)
+
+
+def make(arguments: argparse.Namespace) -> int:
+    """The work itself, and what is said of it."""
     of_facets: list[str] = []
     with Bar() as bar:
         mesh, error = read(arguments, bar)
@@ -161,7 +206,10 @@ def run(arguments: argparse.Namespace) -> int:
                 mesh = _native.Mesh.from_stock(mesh, error, budget=arguments.budget,
                                                keep_volume=arguments.keep_volume,
                                                progress=lambda fraction: bar("mesh", fraction))
+            drawn = draw(mesh, arguments)  # before anything is written: there may be none
             of_facets = write_parts(mesh, arguments, bar)
+            for path, curves in drawn:
+                drawing.write(curves, path)
             made = mesh.contour
     if arguments.measure:
         say([json.dumps(measures(mesh, arguments.thickness), indent=2, allow_nan=False)])

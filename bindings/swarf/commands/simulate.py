@@ -8,7 +8,7 @@ import sys
 import time
 from typing import Any
 
-from .. import colours, inputs, meshing, report, timing
+from .. import colours, inputs, meshing, report, solids, timing
 from .._native import Contour
 from ..console import DONE, FINDINGS, check_outputs, one_line, say, tell
 from ..files import check_suffix
@@ -51,8 +51,6 @@ def add(subparsers: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Cut, write what is asked for, say what was found."""
     inputs.set_threads(arguments)
-    for path in arguments.output:
-        output_suffix(path)
     check_suffix(arguments.picture, "picture", ".png")
     check_suffix(arguments.report, "report", ".json")
     if arguments.colours is not None:
@@ -61,6 +59,9 @@ def run(arguments: argparse.Namespace) -> int:
     check_outputs(outputs, (*sources, arguments.machine))
     check_tolerance(arguments.tolerance)
     check_mesh(arguments.error, arguments.budget)
+    suffixes = {output_suffix(path) for path in arguments.output}
+    meshing.check_meant(arguments, made=arguments.report is not None or not suffixes.isdisjoint(MESH_SUFFIXES),
+                        of_error=not suffixes.isdisjoint(solids.SUFFIXES))
     if not math.isfinite(arguments.allowance):
         raise ValueError(f"allowance {arguments.allowance:g}: wanted a number")
     machine = None if arguments.machine is None else timing.read_machine(arguments.machine)
