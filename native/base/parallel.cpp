@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
@@ -106,12 +107,18 @@ void run_on(int threads, run &state)
     for (std::thread &thread : team) thread.join();
 }
 #else
+/* Pieces that one task does: handing over takes as long as a small piece. Few enough that the threads end together. */
+size_t grain_of(size_t count, int threads)
+{
+    return std::clamp<size_t>(count / (256 * static_cast<size_t>(threads)), 1, 16);
+}
+
 void run_on(int threads, run &state)
 {
     std::unique_ptr<tbb::task_arena> arena = take_arena(threads);
     arena->execute([&] {
         tbb::parallel_for(
-            tbb::blocked_range<size_t>(0, state.count, 1),
+            tbb::blocked_range<size_t>(0, state.count, grain_of(state.count, threads)),
             [&](const tbb::blocked_range<size_t> &range) {
                 current_slot = tbb::this_task_arena::current_thread_index();
                 for (size_t index = range.begin(); index != range.end(); index++) state.one(index);
