@@ -17,8 +17,9 @@
 #ifndef SWARF_MESH_CONTOUR_H
 #define SWARF_MESH_CONTOUR_H
 
+#include "base/parallel.h"
 #include "mesh/facets.h"
-#include "mesh/intersect.h"
+#include "mesh/known.h"
 #include "stock/stock.h"
 #include "swarf/mesh.h"
 
@@ -164,10 +165,25 @@ swarf_status swarf_contour_check(const swarf_contour_options *options);
 swarf_status swarf_contour_begin(swarf_stock *stock, const swarf_contour_options *options, contour *out);
 /** Blocks that cells of the surface may lie in, those of the band and about it. */
 swarf_status swarf_contour_blocks(contour *work);
+/** The part of the error that shifting vertices may take to keep the volume. A face that bends evenly takes two thirds
+ * of what leaving vertices out took. */
+#define SWARF_REGAIN_PART 0.2
 /** All passes, until no facets cut each other: the facets of the band, and what they came to (added to *report). The
  *  blocks are there; those that are finished stay as they are. */
 swarf_status swarf_contour_settle(contour *work, const swarf_contour_options *options, const swarf_progress *progress,
                                   swarf_facets *facets, swarf_contour_report *report);
+/** Facets that cut each other, those of two other bands aside. */
+typedef struct contour_pairs {
+    swarf_facet_pair *pair; /**< the caller's to free() */
+    size_t count;
+    size_t fresh; /**< that the band before has not seen, those of the layer above among them */
+    size_t last;  /**< that the next band will not see again */
+} contour_pairs;
+
+/** Pairs of facets that are not both known; where there are any, `known` are then these facets. The facets stay, with
+ * all vertices, behind which come those of the band below. */
+swarf_status swarf_contour_pairs_find(const contour *work, swarf_facets *facets, swarf_facets_known *known,
+                                      const swarf_progress_share *share, contour_pairs *out);
 /** Note the cells of the surface where the boxes of two facets that cut each other overlap, and two voxels round it. */
 void swarf_contour_note(contour *work, const swarf_facets *facets, const swarf_facet_pair *pair);
 /** The next remedy for the cells noted: the blocks to be placed again are then `changed`, those about them touched.

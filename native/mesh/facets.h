@@ -25,6 +25,9 @@ typedef struct swarf_facets {
 
 void swarf_facets_free(swarf_facets *facets);
 
+/** Put more facets, and their vertices, behind these, which they share vertices with that lie at the same places. */
+swarf_status swarf_facets_append(swarf_facets *facets, const swarf_facets *more);
+
 /** Drop vertices that no facet uses; `marks` (NULL: none) go with the others. */
 swarf_status swarf_facets_compact(swarf_facets *facets, uint8_t *marks);
 
