@@ -187,21 +187,21 @@ typedef struct writing {
 static swarf_status write_to(void *context, const char *path, const swarf_progress *progress)
 {
     const writing *w = context;
-    return swarf_mesh_write_colored(w->mesh, w->rgb, w->count, path, progress);
+    return swarf_mesh_write_coloured(w->mesh, w->rgb, w->count, path, progress);
 }
 
 /** A table of colours as bytes; *out is freed with PyMem_Free(). */
-static int read_colors(PyObject *object, uint8_t **out, size_t *count)
+static int read_colours(PyObject *object, uint8_t **out, size_t *count)
 {
     uint32_t *values;
     *out = NULL;
     *count = 0;
     if (!object || object == Py_None) return 0;
-    if (buffer_indices(object, "colors", 3, &values, count)) return -1;
+    if (buffer_indices(object, "colours", 3, &values, count)) return -1;
     uint8_t *rgb = PyMem_Malloc(3 * *count + 1);
     for (size_t i = 0; rgb && i < 3 * *count; i++) {
         if (values[i] > 255) {
-            PyErr_Format(PyExc_ValueError, "colors: row %zu: %u is not in 0 .. 255", i / 3, (unsigned)values[i]);
+            PyErr_Format(PyExc_ValueError, "colours: row %zu: %u is not in 0 .. 255", i / 3, (unsigned)values[i]);
             PyMem_Free(rgb);
             PyMem_Free(values);
             return -1;
@@ -216,14 +216,14 @@ static int read_colors(PyObject *object, uint8_t **out, size_t *count)
 
 static PyObject *mesh_write(PyObject *self, PyObject *args, PyObject *keywords)
 {
-    static char *names[] = {"path", "colors", "progress", NULL};
-    PyObject *path, *colors = NULL, *progress = NULL;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O&|$OO:write", names, PyUnicode_FSConverter, &path, &colors,
+    static char *names[] = {"path", "colours", "progress", NULL};
+    PyObject *path, *colours = NULL, *progress = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O&|$OO:write", names, PyUnicode_FSConverter, &path, &colours,
                                      &progress))
         return NULL;
     writing w = {.mesh = handle_of(self)};
     uint8_t *rgb;
-    if (read_colors(colors, &rgb, &w.count)) {
+    if (read_colours(colours, &rgb, &w.count)) {
         Py_DECREF(path);
         return NULL;
     }
@@ -316,10 +316,10 @@ static PyMethodDef mesh_methods[] = {
      "``memory_limit`` (bytes; 0: 80 % of what is free now) is made and written band by band along x, with small\n"
      "triangles along the planes between them; a pipe gets the whole one however much memory that takes."},
     {"write", WITH_KEYWORDS(mesh_write), METH_VARARGS | METH_KEYWORDS,
-     "write($self, path, *, colors=None, progress=None)\n--\n\n"
+     "write($self, path, *, colours=None, progress=None)\n--\n\n"
      "Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure "
      "loses\n"
-     "nothing. ``colors`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."},
+     "nothing. ``colours`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."},
     {"measure", mesh_measure, METH_NOARGS, mesh_measure_doc},
     {"shells", mesh_shells, METH_NOARGS, mesh_shells_doc},
     {"keep_shells", mesh_keep_shells, METH_O, mesh_keep_shells_doc},

@@ -719,9 +719,9 @@ class Mesh:
         """The mesh of from_stock() straight to a binary .stl file; its Contour. One that would not fit into
         ``memory_limit`` (bytes; 0: 80 % of what is free now) is made and written band by band along x, with small
         triangles along the planes between them; a pipe gets the whole one however much memory that takes."""
-    def write(self, path: Path, *, colors: Optional[_Table] = None, progress: Progress = None) -> None:
+    def write(self, path: Path, *, colours: Optional[_Table] = None, progress: Progress = None) -> None:
         """Write .stl or .ply (binary), .obj, .3mf or .glb by the suffix; beside the target and renamed, so a failure
-        loses nothing. ``colors`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."""
+        loses nothing. ``colours`` is an (m, 3) table of 0 .. 255, a row per triangle; .stl has no place for it."""
     def measure(self) -> Shell:
         """All shells as one Shell; cavities count against the solids."""
     def shells(self) -> tuple[Shell, ...]:

@@ -180,7 +180,7 @@ def _tints(colour: str, mesh: Mesh, result: Result, tolerance: float, allowance:
 
 
 def _write_mesh(path: str, mesh: Mesh, tints: Optional[list[colours.RGB]], stages: Stages) -> None:
-    stages.run("write", lambda report: mesh.write(path, colors=tints, progress=report))
+    stages.run("write", lambda report: mesh.write(path, colours=tints, progress=report))
 
 
 def _draw(path: str, stock: Stock, surface: Surface, view: View, size: tuple[int, int], stages: Stages) -> None:

@@ -4,7 +4,7 @@
  * is what a milled part asks for. */
 #include "base/parallel.h"
 #include "base/status.h"
-#include "mesh/colors.h"
+#include "mesh/colours.h"
 #include "mesh/mesh.h"
 #include "mesh/text.h"
 
@@ -39,8 +39,8 @@ static void put_f32(output *o, float value)
 static size_t describe(const swarf_painted *p, char json[JSON])
 {
     const swarf_triangles *t = &p->triangles;
-    const size_t positions = 12 * t->vertex_count, colors = p->vertex_rgb ? 4 * t->vertex_count : 0;
-    const size_t indices = 12 * t->triangle_count, total = positions + colors + indices;
+    const size_t positions = 12 * t->vertex_count, colours = p->vertex_rgb ? 4 * t->vertex_count : 0;
+    const size_t indices = 12 * t->triangle_count, total = positions + colours + indices;
     double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < 3 * t->vertex_count; i++) {
         lo[i % 3] = fmin(lo[i % 3], (double)t->xyz[i]);
@@ -56,16 +56,17 @@ static size_t describe(const swarf_painted *p, char json[JSON])
               "[0.001,0,0,0,0,0,-0.001,0,0,0.001,0,0,0,0,0,1]}],"
               "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0%s},\"indices\":1,\"mode\":4}]}],"
               "\"buffers\":[{\"byteLength\":%zu}],",
-              colors ? ",\"COLOR_0\":2" : "", total);
+              colours ? ",\"COLOR_0\":2" : "", total);
         PRINT("\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":%zu,\"target\":34962},"
               "{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34963}",
-              positions, positions + colors, indices);
-        if (colors) PRINT(",{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34962}", positions, colors);
+              positions, positions + colours, indices);
+        if (colours)
+            PRINT(",{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34962}", positions, colours);
         PRINT("],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%zu,\"type\":\"VEC3\","
               "\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]},",
               t->vertex_count, lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
         PRINT("{\"bufferView\":1,\"componentType\":5125,\"count\":%zu,\"type\":\"SCALAR\"}", 3 * t->triangle_count);
-        if (colors)
+        if (colours)
             PRINT(",{\"bufferView\":2,\"componentType\":5121,\"normalized\":true,\"count\":%zu,\"type\":\"VEC4\"}",
                   t->vertex_count);
         PRINT("]}");

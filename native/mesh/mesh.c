@@ -171,11 +171,11 @@ static const struct format {
 
 swarf_status swarf_mesh_write(const swarf_mesh *mesh, const char *path, const swarf_progress *progress)
 {
-    return swarf_mesh_write_colored(mesh, NULL, 0, path, progress);
+    return swarf_mesh_write_coloured(mesh, NULL, 0, path, progress);
 }
 
-swarf_status swarf_mesh_write_colored(const swarf_mesh *mesh, const uint8_t *rgb, size_t triangle_count,
-                                      const char *path, const swarf_progress *progress)
+swarf_status swarf_mesh_write_coloured(const swarf_mesh *mesh, const uint8_t *rgb, size_t triangle_count,
+                                       const char *path, const swarf_progress *progress)
 {
     SWARF_REQUIRE(mesh && path, "mesh: NULL");
     SWARF_REQUIRE(!rgb || triangle_count == mesh->data.triangle_count, "mesh: %zu colours for %zu triangles",

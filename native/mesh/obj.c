@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/status.h"
-#include "mesh/colors.h"
+#include "mesh/colours.h"
 #include "mesh/text.h"
 
 #include <string.h>

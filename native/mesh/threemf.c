@@ -3,7 +3,7 @@
  * in millimetres. Written as it goes, with no copy of the mesh in memory. */
 #include "base/parallel.h"
 #include "base/status.h"
-#include "mesh/colors.h"
+#include "mesh/colours.h"
 #include "mesh/mesh.h"
 #include "mesh/text.h"
 #include "mesh/zip.h"
@@ -40,7 +40,7 @@ static swarf_status write_whole(swarf_zip *zip, const char *name, const char *te
 }
 
 static swarf_status write_mesh(output *o, const swarf_triangles *t, const uint8_t *rgb, const uint32_t *palette,
-                               size_t colors, const swarf_progress *progress)
+                               size_t colours, const swarf_progress *progress)
 {
     const double total = (double)(t->vertex_count + t->triangle_count) + 1;
     PRINT(o, "<object id=\"1\" type=\"model\"%s><mesh><vertices>\n", rgb ? " pid=\"2\" pindex=\"0\"" : "");
@@ -53,7 +53,7 @@ static swarf_status write_mesh(output *o, const swarf_triangles *t, const uint8_
     for (size_t i = 0; i < t->triangle_count; i++) {
         const uint32_t *v = t->index + 3 * i;
         PRINT(o, "<triangle v1=\"%u\" v2=\"%u\" v3=\"%u\"", v[0], v[1], v[2]);
-        if (rgb) PRINT(o, " pid=\"2\" p1=\"%zu\"", swarf_palette_find(palette, colors, rgb + 3 * i));
+        if (rgb) PRINT(o, " pid=\"2\" p1=\"%zu\"", swarf_palette_find(palette, colours, rgb + 3 * i));
         PRINT(o, "/>\n");
         if (i % REPORT == 0) SWARF_TRY(swarf_progress_report(progress, (double)(t->vertex_count + i) / total));
     }
@@ -62,7 +62,7 @@ static swarf_status write_mesh(output *o, const swarf_triangles *t, const uint8_
 }
 
 static swarf_status write_model(output *o, const swarf_triangles *t, const uint8_t *rgb, const uint32_t *palette,
-                                size_t colors, const swarf_progress *progress)
+                                size_t colours, const swarf_progress *progress)
 {
     PRINT(o, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\"\n");
     PRINT(o, " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"");
@@ -70,17 +70,17 @@ static swarf_status write_model(output *o, const swarf_triangles *t, const uint8
     PRINT(o, "<metadata name=\"Application\">Swarf %s</metadata>\n<resources>\n", swarf_version());
     if (rgb) {
         PRINT(o, "<m:colorgroup id=\"2\">");
-        for (size_t i = 0; i < colors; i++) PRINT(o, "<m:color color=\"#%06XFF\"/>\n", palette[i]);
+        for (size_t i = 0; i < colours; i++) PRINT(o, "<m:color color=\"#%06XFF\"/>\n", palette[i]);
         PRINT(o, "</m:colorgroup>\n");
     }
     /* an object must have a triangle: an empty mesh is a model of nothing */
-    if (t->triangle_count) SWARF_TRY(write_mesh(o, t, rgb, palette, colors, progress));
+    if (t->triangle_count) SWARF_TRY(write_mesh(o, t, rgb, palette, colours, progress));
     PRINT(o, "</resources>\n<build>%s</build>\n</model>\n", t->triangle_count ? "<item objectid=\"1\"/>" : "");
     return flush(o);
 }
 
 static swarf_status write_parts(output *o, const swarf_triangles *t, const uint8_t *rgb, const uint32_t *palette,
-                                size_t colors, const swarf_progress *progress)
+                                size_t colours, const swarf_progress *progress)
 {
     SWARF_TRY(write_whole(o->zip, "[Content_Types].xml",
                           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -96,7 +96,7 @@ static swarf_status write_parts(output *o, const swarf_triangles *t, const uint8
                           "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
                           "</Relationships>\n"));
     SWARF_TRY(swarf_zip_entry(o->zip, "3D/3dmodel.model"));
-    SWARF_TRY(write_model(o, t, rgb, palette, colors, progress));
+    SWARF_TRY(write_model(o, t, rgb, palette, colours, progress));
     SWARF_TRY(swarf_zip_finish(o->zip));
     return swarf_progress_report(progress, 1.0);
 }
@@ -104,14 +104,14 @@ static swarf_status write_parts(output *o, const swarf_triangles *t, const uint8
 swarf_status swarf_3mf_write(const swarf_triangles *t, const uint8_t *rgb, FILE *stream, const swarf_progress *progress)
 {
     uint32_t *palette = NULL;
-    size_t colors = 0;
+    size_t colours = 0;
     locale_t kept;
-    if (rgb) SWARF_TRY(swarf_palette(rgb, t->triangle_count, &palette, &colors));
+    if (rgb) SWARF_TRY(swarf_palette(rgb, t->triangle_count, &palette, &colours));
     output *o = calloc(1, sizeof *o);
     swarf_status status = o ? swarf_zip_create(stream, &o->zip) : swarf_fail(SWARF_ERROR_MEMORY, "out of memory");
     if (status == SWARF_OK) status = swarf_text_locale_begin(&kept);
     if (status == SWARF_OK) {
-        status = write_parts(o, t, rgb, palette, colors, progress);
+        status = write_parts(o, t, rgb, palette, colours, progress);
         swarf_text_locale_end(kept);
     }
     if (o) swarf_zip_destroy(o->zip);

@@ -96,14 +96,14 @@ def test_section(mesh):
         mesh.section((0, 0, 0), (0, 0, 0))
 
 
-def colors_of(mesh):
+def colours_of(mesh):
     return [(255, 128, 0) if i % 2 else (0, 7, 250) for i in range(mesh.triangle_count)]
 
 
-@pytest.mark.parametrize("colored", [False, True])
-def test_3mf(mesh, tmp_path, colored):
+@pytest.mark.parametrize("coloured", [False, True])
+def test_3mf(mesh, tmp_path, coloured):
     path = tmp_path / "part.3mf"
-    mesh.write(path, colors=colors_of(mesh) if colored else None)
+    mesh.write(path, colours=colours_of(mesh) if coloured else None)
     with zipfile.ZipFile(path) as archive:
         assert archive.testzip() is None
         assert archive.namelist() == ["[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"]
@@ -117,15 +117,15 @@ def test_3mf(mesh, tmp_path, colored):
     again = swarf.Mesh(vertices, triangles)
     assert again.vertices.tolist() == mesh.vertices.tolist() and again.triangles.tolist() == mesh.triangles.tolist()
     palette = [color.get("color") for color in model.iter(material + "color")]
-    assert palette == (["#0007FAFF", "#FF8000FF"] if colored else [])
-    if colored:
+    assert palette == (["#0007FAFF", "#FF8000FF"] if coloured else [])
+    if coloured:
         assert [int(t.get("p1")) for t in model.iter(core + "triangle")] == [i % 2 for i in range(len(triangles))]
 
 
-@pytest.mark.parametrize("colored", [False, True])
-def test_gltf(mesh, tmp_path, colored):
+@pytest.mark.parametrize("coloured", [False, True])
+def test_gltf(mesh, tmp_path, coloured):
     path = tmp_path / "part.glb"
-    mesh.write(path, colors=colors_of(mesh) if colored else None)
+    mesh.write(path, colours=colours_of(mesh) if coloured else None)
     data = path.read_bytes()
     magic, version, length, size, kind = struct.unpack_from("<4sIII4s", data)
     assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON") and size % 4 == 0
@@ -147,29 +147,29 @@ def test_gltf(mesh, tmp_path, colored):
     assert described["accessors"][0]["min"] == [min(p[k] for p in positions) for k in range(3)]
     assert described["accessors"][0]["max"] == [max(p[k] for p in positions) for k in range(3)]
     attributes = described["meshes"][0]["primitives"][0]["attributes"]
-    assert ("COLOR_0" in attributes) == colored
-    if colored:
+    assert ("COLOR_0" in attributes) == coloured
+    if coloured:
         rgba = table(2, "B", 4)
-        assert [rgba[c][:3] for c in corners[::3]] == colors_of(mesh)
+        assert [rgba[c][:3] for c in corners[::3]] == colours_of(mesh)
 
 
-def test_colors_of_ply_and_obj(mesh, tmp_path):
-    colors = colors_of(mesh)
+def test_colours_of_ply_and_obj(mesh, tmp_path):
+    colours = colours_of(mesh)
     for name in ("part.ply", "part.obj", "part.stl"):
-        mesh.write(tmp_path / name, colors=colors)
+        mesh.write(tmp_path / name, colours=colours)
         again = swarf.Mesh.read(tmp_path / name)
         assert again.triangle_count == mesh.triangle_count
         assert again.volume == pytest.approx(mesh.volume, rel=1e-9)
     head, body = (tmp_path / "part.ply").read_bytes().split(b"end_header\n", 1)
     assert b"property uchar blue" in head
     faces = body[12 * mesh.vertex_count:]
-    assert [tuple(faces[16 * i + 13:16 * i + 16]) for i in range(mesh.triangle_count)] == colors
+    assert [tuple(faces[16 * i + 13:16 * i + 16]) for i in range(mesh.triangle_count)] == colours
     first = next(line for line in (tmp_path / "part.obj").read_text().splitlines() if line.startswith("v "))
     assert len(first.split()) == 7
     with pytest.raises(ValueError, match="2 colours for"):
-        mesh.write(tmp_path / "part.ply", colors=[(1, 2, 3)] * 2)
+        mesh.write(tmp_path / "part.ply", colours=[(1, 2, 3)] * 2)
     with pytest.raises(ValueError, match="256"):
-        mesh.write(tmp_path / "part.ply", colors=[(1, 2, 256)] * mesh.triangle_count)
+        mesh.write(tmp_path / "part.ply", colours=[(1, 2, 256)] * mesh.triangle_count)
 
 
 def test_empty_meshes_can_be_written(tmp_path):

@@ -52,16 +52,16 @@ static void check_file(const std::string &path, const swarf_mesh *mesh, const ui
         CHECK(lib3mf_meshobject_gettriangleindices(object, corners.data(), triangles, nullptr) == 0);
         CHECK(std::memcmp(points.data(), t.xyz, 12 * t.vertex_count) == 0);
         CHECK(std::memcmp(corners.data(), t.index, 12 * t.triangle_count) == 0);
-        PLib3MFPropertyHandler *colors = nullptr;
-        CHECK(lib3mf_meshobject_createpropertyhandler(object, &colors) == 0);
+        PLib3MFPropertyHandler *colours = nullptr;
+        CHECK(lib3mf_meshobject_createpropertyhandler(object, &colours) == 0);
         for (DWORD i = 0; rgb && i < triangles; i++) {
             MODELMESH_TRIANGLECOLOR_SRGB color;
             std::memset(&color, 0, sizeof color);
-            CHECK(lib3mf_propertyhandler_getcolor(colors, i, &color) == 0);
+            CHECK(lib3mf_propertyhandler_getcolor(colours, i, &color) == 0);
             CHECK(color.m_Colors[0].m_Red == rgb[3 * i] && color.m_Colors[0].m_Green == rgb[3 * i + 1] &&
                   color.m_Colors[0].m_Blue == rgb[3 * i + 2]);
         }
-        lib3mf_release(colors);
+        lib3mf_release(colours);
         lib3mf_release(object);
     }
     lib3mf_release(model);
@@ -77,7 +77,7 @@ static void check_shape(shape *s, const std::string &folder)
     for (size_t i = 0; i < 3 * triangles.triangle_count; i++) rgb.push_back(static_cast<uint8_t>(37 * i));
     CHECK_OK(swarf_mesh_write(mesh, path.c_str(), nullptr));
     check_file(path, mesh, nullptr);
-    CHECK_OK(swarf_mesh_write_colored(mesh, rgb.data(), triangles.triangle_count, path.c_str(), nullptr));
+    CHECK_OK(swarf_mesh_write_coloured(mesh, rgb.data(), triangles.triangle_count, path.c_str(), nullptr));
     check_file(path, mesh, rgb.data());
     swarf_mesh_release(mesh);
     unlink(path.c_str());

@@ -138,7 +138,7 @@ def write_parts(mesh: _native.Mesh, arguments: argparse.Namespace, bar: Bar) -> 
                 solids.write_facets(part, numbered(path, number) if several else path, NO_PROGRAM,
                                     lambda fraction: bar("write", fraction))
                 continue
-            part.write(numbered(path, number) if several else path, colors=tints,
+            part.write(numbered(path, number) if several else path, colours=tints,
                        progress=lambda fraction: bar("write", fraction))
     written = [path for path in outputs if is_solid(path)]
     return [in_a_row(path, len(parts)) for path in written] if several else written

@@ -327,5 +327,5 @@ def export(data, stock_file, path, error_mm=None, budget=0, colour=None, toleran
         mesh = parts.largest(mesh)
     tints = colours.make(colour, mesh, surface, job, tolerance_mm, progress=share(0.8, 0.95),
                          allowance=allowance_mm) if colour else None
-    mesh.write(path, colors=tints, progress=share(0.95, 1))
+    mesh.write(path, colours=tints, progress=share(0.95, 1))
     return mesh.triangle_count

@@ -141,8 +141,8 @@ SWARF_API swarf_status swarf_mesh_read(const char *path, swarf_mesh **out);
 SWARF_API swarf_status swarf_mesh_write(const swarf_mesh *mesh, const char *path, const swarf_progress *progress);
 /** The same with a colour per triangle (3 bytes each; NULL: none): of faces in .ply and .3mf, of vertices (split where
  *  colours meet) in .obj and .glb; .stl leaves them out. */
-SWARF_API swarf_status swarf_mesh_write_colored(const swarf_mesh *mesh, const uint8_t *rgb, size_t triangle_count,
-                                                const char *path, const swarf_progress *progress);
+SWARF_API swarf_status swarf_mesh_write_coloured(const swarf_mesh *mesh, const uint8_t *rgb, size_t triangle_count,
+                                                 const char *path, const swarf_progress *progress);
 SWARF_API swarf_mesh *swarf_mesh_retain(swarf_mesh *mesh);
 SWARF_API void swarf_mesh_release(swarf_mesh *mesh);
 

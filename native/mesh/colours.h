@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Colours of triangles, for formats that know them otherwise. */
-#ifndef SWARF_MESH_COLORS_H
-#define SWARF_MESH_COLORS_H
+#ifndef SWARF_MESH_COLOURS_H
+#define SWARF_MESH_COLOURS_H
 
 #include "swarf/base.h"
 
@@ -17,8 +17,8 @@ swarf_status swarf_painted_create(const swarf_triangles *triangles, const uint8_
 void swarf_painted_free(swarf_painted *painted);
 
 /** The different colours among `count` (3 bytes each), ascending, as 0xRRGGBB; freed by the caller with free(). */
-swarf_status swarf_palette(const uint8_t *rgb, size_t count, uint32_t **out, size_t *colors);
+swarf_status swarf_palette(const uint8_t *rgb, size_t count, uint32_t **out, size_t *colours);
 /** Place of a colour in a palette that holds it. */
-size_t swarf_palette_find(const uint32_t *palette, size_t colors, const uint8_t rgb[3]);
+size_t swarf_palette_find(const uint32_t *palette, size_t colours, const uint8_t rgb[3]);
 
 #endif
