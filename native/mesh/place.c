@@ -3,6 +3,7 @@
  * by the mesh where the exact surface is known: its vertices are turned, and the new voxels get their exact distance to
  * it, so that edges stay edges. Else new voxels are made from the old ones, but for larger ones, whose band is wider
  * than what the old ones know. */
+#include "swarf/place.h"
 #include "base/parallel.h"
 #include "base/placement.h"
 #include "base/status.h"

@@ -12,6 +12,7 @@
 #include "load.h"
 #include "lumps.h"
 #include "mesh.h"
+#include "place.h"
 #include "placement.h"
 #include "program.h"
 #include "render.h"
