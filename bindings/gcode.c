@@ -6,7 +6,6 @@
 
 #include <stdlib.h>
 
-static const char *const dialect_names[] = {"linuxcnc", "grbl", "mach3", "fanuc"};
 static const char *const unit_names[] = {"mm", "inch"};
 static const char *const note_names[] = {"error", "warning", "message"};
 
@@ -36,7 +35,7 @@ typedef struct keywords {
         &(k).line_limit, &(k).progress
 #define KEYWORD_DEFAULTS                                                                                               \
     {                                                                                                                  \
-        .dialect = dialect_names[0], .unit = unit_names[0]                                                             \
+        .dialect = swarf_gcode_dialect_name(SWARF_DIALECT_LINUXCNC), .unit = unit_names[0]                             \
     }
 
 static void reading_end(reading *r)
@@ -116,10 +115,18 @@ static int reading_diameters(reading *r, PyObject *diameters)
     return failed ? -1 : 0;
 }
 
+static int dialect_find(const char *text)
+{
+    const char *names[16];
+    int count = 0;
+    while (count < 16 && (names[count] = swarf_gcode_dialect_name((swarf_gcode_dialect)count)) != NULL) count++;
+    return choice_find("dialect", text, names, count);
+}
+
 static int reading_options(reading *r, PyTypeObject *type, const keywords *k)
 {
     if (k->start && k->start != Py_None && buffer_point(k->start, "start", r->options.start)) return -1;
-    const int dialect = choice_find("dialect", k->dialect, dialect_names, 4);
+    const int dialect = dialect_find(k->dialect);
     if (dialect < 0) return -1;
     const int unit = choice_find("machine_unit", k->unit, unit_names, 2);
     if (unit < 0) return -1;

@@ -17,6 +17,8 @@ static void check_box(double lo, double hi, double excess, double gouge)
     const swarf_triangles triangles = shape_view(&design);
     swarf_solid *solid = NULL;
     CHECK_OK(swarf_solid_create(&triangles, NULL, &solid));
+    CHECK(swarf_solid_retain(solid) == solid && !swarf_solid_retain(NULL));
+    swarf_solid_release(solid);
     swarf_comparison result;
     uint64_t before, after;
     if (CHECK_OK(swarf_stock_create_box(&bounds, &options, &stock))) {
