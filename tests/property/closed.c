@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../bench/jobs.h"
+#include "jobs.h"
 #include "shapes.h"
 #include "stocks.h"
 #include "verdict.h"

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../bench/jobs.h"
+#include "jobs.h"
 #include "stocks.h"
 
 static swarf_contour_report contour(swarf_stock *stock, const swarf_surface *surface, double error_mm)

@@ -4,7 +4,6 @@
  * volume, and simplifying keeps the number of shells and holes. Where edges are split more of the exact surface is
  * there, and next to none of the triangles made cut others. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cuts.h"
@@ -125,8 +124,7 @@ int main(void)
     size_t crossed[2] = {0};
     check_count();
     test_random random = test_random_begin(20), points_random = test_random_begin(21);
-    const char *count_text = getenv("SWARF_COUNT");
-    const int count = count_text ? atoi(count_text) : 25;
+    const int count = test_size() == TEST_FULL ? 250 : 25;
     for (int i = 0; i < count; i++) {
         const double voxel = test_random_in(&random, 0.1, 0.5);
         swarf_surface *surface = NULL;

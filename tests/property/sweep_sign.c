@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* Signs of swarf_sweep_distance(), and where it puts the surface, against the oracle, for every cutter and motion.
  *
- * 1,000 points for each pair, 100,000 with SWARF_TEST_FULL=1, any number of thousands with SWARF_TEST_POINTS=1000.
+ * 1,000 points for each pair, 100,000 with SWARF_TEST_FULL=1.
  * Arguments: number of a cutter, number of a motion (all without). Cases are independent and shared out to threads.
  */
 #include <math.h>
@@ -153,7 +153,6 @@ static void *work(void *unused)
 int main(int count, char **argument)
 {
     points_per_case = test_size() == TEST_FULL ? 100000 : 1000;
-    if (getenv("SWARF_TEST_POINTS")) points_per_case = (strtoul(getenv("SWARF_TEST_POINTS"), NULL, 10) / 1000) * 1000;
     seed = test_random_begin(20240611).state;
     if (count > 1) only_cutter = atoi(argument[1]);
     if (count > 2) only_motion = atoi(argument[2]);

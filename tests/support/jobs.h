@@ -93,27 +93,63 @@ static inline swarf_path *bench_job_paths(const bench_job *job, size_t *count)
     return paths;
 }
 
-/** The stock after the job, and its exact surface; both owned by the caller. */
-static inline swarf_stock *bench_job_cut(const bench_job *j, double voxel, swarf_surface **surface)
+/** A job about to be run: a block, and what cuts it. */
+typedef struct bench_setup {
+    swarf_program *program;
+    swarf_cutter *cutter;
+    swarf_tool *tools;
+    size_t moves, tool_count;
+    swarf_stock *stock;
+} bench_setup;
+
+static inline bench_setup bench_setup_begin(const bench_job *job, double voxel)
 {
-    swarf_program *program = bench_job_program(j);
-    const size_t moves = swarf_program_move_count(program), sections = swarf_program_section_count(program);
-    swarf_tool *tools = calloc(sections + 1, sizeof *tools);
-    swarf_cutter *cutter = NULL;
-    swarf_simulation *simulation = NULL;
+    bench_setup s = {.program = bench_job_program(job)};
+    s.moves = swarf_program_move_count(s.program);
+    s.tool_count = swarf_program_section_count(s.program);
+    s.tools = calloc(s.tool_count + 1, sizeof *s.tools);
+    if (!s.tools) exit(2);
+    bench_must(swarf_cutter_parse(job->cutter, &s.cutter));
+    for (size_t i = 0; i < s.tool_count; i++)
+        s.tools[i] = (swarf_tool){swarf_program_sections(s.program)[i].tool, 0, s.cutter};
     swarf_stock_options options = swarf_stock_options_default();
     options.voxel_mm = voxel;
-    swarf_stock *stock = NULL;
-    bench_must(swarf_cutter_parse(j->cutter, &cutter));
-    for (size_t i = 0; i < sections; i++) tools[i] = (swarf_tool){swarf_program_sections(program)[i].tool, 0, cutter};
-    bench_must(swarf_stock_create_box(&j->box, &options, &stock));
-    bench_must(swarf_surface_create(stock, program, tools, sections, NULL, surface));
-    bench_must(swarf_stock_simulate(stock, program, 0, moves, tools, sections, NULL, NULL, &simulation));
+    bench_must(swarf_stock_create_box(&job->box, &options, &s.stock));
+    return s;
+}
+
+/** The exact surface of a job, before it is cut; owned by the caller. */
+static inline swarf_surface *bench_setup_surface(const bench_setup *s)
+{
+    swarf_surface *surface = NULL;
+    bench_must(swarf_surface_create(s->stock, s->program, s->tools, s->tool_count, NULL, &surface));
+    return surface;
+}
+
+static inline void bench_setup_cut(const bench_setup *s)
+{
+    swarf_simulation *simulation = NULL;
+    bench_must(
+        swarf_stock_simulate(s->stock, s->program, 0, s->moves, s->tools, s->tool_count, NULL, NULL, &simulation));
     swarf_simulation_destroy(simulation);
-    swarf_cutter_release(cutter);
-    swarf_program_release(program);
-    free(tools);
-    return stock;
+}
+
+/** The stock, owned by the caller; the rest is freed. */
+static inline swarf_stock *bench_setup_end(bench_setup *s)
+{
+    free(s->tools);
+    swarf_cutter_release(s->cutter);
+    swarf_program_release(s->program);
+    return s->stock;
+}
+
+/** The stock after the job, and its exact surface; both owned by the caller. */
+static inline swarf_stock *bench_job_cut(const bench_job *job, double voxel, swarf_surface **surface)
+{
+    bench_setup s = bench_setup_begin(job, voxel);
+    *surface = bench_setup_surface(&s);
+    bench_setup_cut(&s);
+    return bench_setup_end(&s);
 }
 
 #endif

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "faces.h"
+#include "placements.h"
 #include "shapes.h"
 #include "stocks.h"
 
@@ -247,23 +248,7 @@ static void cut_all(part *t, swarf_stock *stock)
     add_cut(t, stock, "flat:d=2,l=19", PLANE, (double[]){-4.5, -9, -2.2}, (double[]){-3.2, 0.3, -2.2}, 1, 0);
 }
 
-static swarf_placement make_placement(double x, double y, double z)
-{
-    const double angle[3] = {x, y, z};
-    double r[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rows[12] = {0};
-    for (int axis = 0; axis < 3; axis++) {
-        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-        for (int k = 0; k < 3; k++) {
-            const double ra = r[a][k], rb = r[b][k];
-            r[a][k] = cos(angle[axis]) * ra - sin(angle[axis]) * rb;
-            r[b][k] = sin(angle[axis]) * ra + cos(angle[axis]) * rb;
-        }
-    }
-    for (int i = 0; i < 3; i++) memcpy(rows + 4 * i, r[i], sizeof r[i]);
-    swarf_placement made = swarf_placement_identity();
-    CHECK_OK(swarf_placement_create(rows, &made));
-    return made;
-}
+static const double no_shift[3] = {0};
 
 /* A block that lies askew, as triangles. */
 static swarf_stock *make_askew(part *t, const swarf_placement *there)
@@ -358,7 +343,7 @@ static const double block_mm3 = 12.08 * 10.08 * 4.03;
 /* A block along the axes, milled, and set up again by its voxels alone. */
 static void check_straight(void)
 {
-    const swarf_placement turn = make_placement(0.5, -0.4, 0.7);
+    const swarf_placement turn = placement_make((double[]){0.5, -0.4, 0.7}, no_shift);
     part t = {.first = plane_body(&block), .back = swarf_placement_identity()};
     swarf_stock *stock = stock_block(&block, voxel), *turned = NULL;
     CHECK_NEAR(check_stock("block", &t, stock, (limits){1e-4, 1e-3, 1e-3}).volume, block_mm3, 1e-6 * block_mm3);
@@ -385,7 +370,8 @@ static void check_askew(const swarf_placement *there, limits whole, limits mille
 
 int main(void)
 {
-    const swarf_placement little = make_placement(0.05, 0.03, 0.3), much = make_placement(0.5, -0.4, 0.7);
+    const swarf_placement little = placement_make((double[]){0.05, 0.03, 0.3}, no_shift),
+                          much = placement_make((double[]){0.5, -0.4, 0.7}, no_shift);
     check_straight();
     check_askew(&little, (limits){0.002, 0.02, 0.05}, (limits){0.03, 0.1, 0.5});
     check_askew(&much, (limits){0.01, 0.05, 0.1}, (limits){0.06, 0.12, 0.7});

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "placements.h"
 #include "stocks.h"
-#include "test.h"
 
 static const double pi = 3.14159265358979323846, voxel = 0.2;
 static const swarf_box block = {{0.03, 0.01, -6.02}, {20.04, 12.05, 0.01}};
@@ -80,26 +80,6 @@ static double first_distance(const double p[3])
     return outline <= 0 && ends <= 0 ? fmax(outline, ends) : hypot(fmax(outline, 0), fmax(ends, 0));
 }
 
-static swarf_placement make_placement(const double angle[3], const double shift[3])
-{
-    double r[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rows[12];
-    for (int axis = 0; axis < 3; axis++) { /* about x, then y, then z */
-        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-        for (int k = 0; k < 3; k++) {
-            const double ra = r[a][k], rb = r[b][k];
-            r[a][k] = cos(angle[axis]) * ra - sin(angle[axis]) * rb;
-            r[b][k] = sin(angle[axis]) * ra + cos(angle[axis]) * rb;
-        }
-    }
-    for (int i = 0; i < 3; i++) {
-        memcpy(rows + 4 * i, r[i], sizeof r[i]);
-        rows[4 * i + 3] = shift[i];
-    }
-    swarf_placement made = swarf_placement_identity();
-    CHECK_OK(swarf_placement_create(rows, &made));
-    return made;
-}
-
 static swarf_stock *place(swarf_stock *stock, const swarf_placement *placement, const swarf_surface *surface,
                           double edge, int expected)
 {
@@ -144,7 +124,7 @@ static void check_quarters(void)
             if (turn >> 2 & 2) continue; /* about y by 0 or a quarter: 32, of them 24 differ */
             double shift[3];
             for (int k = 0; k < 3; k++) shift[k] = test_random_in(&random, -50, 50);
-            const swarf_placement there = make_placement(angle, shift), back = swarf_placement_inverse(&there);
+            const swarf_placement there = placement_make(angle, shift), back = swarf_placement_inverse(&there);
             swarf_stock *placed = place(stock, &there, NULL, 0, 1), *again = place(placed, &back, NULL, 0, 1);
             CHECK(hash_of(again) == hash);
             CHECK_NEAR(volume_of(placed), volume, 1e-7 * volume); /* integrated in another order */
@@ -172,7 +152,7 @@ static void check_untouched(void)
 {
     swarf_stock *turned = make_block(voxel), *plain = make_block(voxel);
     job j = first_job();
-    const swarf_placement over = make_placement((double[]){pi, 0, 0}, (double[]){0, 0, 0});
+    const swarf_placement over = placement_make((double[]){pi, 0, 0}, (double[]){0, 0, 0});
     swarf_stock *there = place(turned, &over, NULL, 0, 1);
     job k = make_job((double[]){-5, -SLOT_Y, -SLOT_Z - 4}, (double[]){25, -SLOT_Y, -SLOT_Z - 4});
     play(there, &k); /* from above: y -8 .. -4, z above -2, all of it */
@@ -311,7 +291,7 @@ static void check_cost(void)
     const double angle[4][3] = {{pi, 0, 0}, {0, 0, 0.3}, {0.5, -0.4, 0.7}, {0.5, -0.4, 0.7}};
     for (int i = 0; i < 4; i++) {
         const double near[3] = {3.3, -70.7, 12.1}, far[3] = {9e5, -8e5, 7e5}; /* where floats are 0.06 mm apart */
-        const swarf_placement there = make_placement(angle[i], i < 3 ? near : far),
+        const swarf_placement there = placement_make(angle[i], i < 3 ? near : far),
                               back = swarf_placement_inverse(&there), none = swarf_placement_identity();
         swarf_stock *exact = place(stock, &there, surface, i ? 0 : 0.13, 0),
                     *plain = place(stock, &there, NULL, i ? 0 : 0.13, 0), *again = place(plain, &back, NULL, 0, i == 0);
@@ -339,7 +319,7 @@ static void check_round(void)
     options.voxel_mm = voxel;
     swarf_stock *stock = NULL;
     CHECK_OK(swarf_stock_create_cylinder((double[]){1, 2, -2.02}, (double[]){0, 0, 10.04}, 4.01, &options, &stock));
-    const swarf_placement there = make_placement((double[]){0.5, -0.4, 0.7}, (double[]){1, 2, 3}),
+    const swarf_placement there = placement_make((double[]){0.5, -0.4, 0.7}, (double[]){1, 2, 3}),
                           back = swarf_placement_inverse(&there);
     swarf_stock *plain = place(stock, &there, NULL, 0, 0), *coarse = place(stock, &there, NULL, 1.5 * voxel, 0);
     check_plain(plain, &back, cylinder_distance, 0.03);
@@ -367,7 +347,7 @@ static swarf_stock *make_turned(double edge)
                              {60.3519 * edge, 40.4253 * edge, 30.2187 * edge}},
                     inner = {{-9.7683 * edge, 12.1173 * edge, 19.0391 * edge}, {80 * edge, 25.1439 * edge, 50 * edge}};
     const swarf_placement there =
-        make_placement((double[]){0.5, -0.4, 0.7}, (double[]){2 * edge, -3.3 * edge, 5.1 * edge});
+        placement_make((double[]){0.5, -0.4, 0.7}, (double[]){2 * edge, -3.3 * edge, 5.1 * edge});
     swarf_stock *stock = NULL, *cut = NULL;
     if (!CHECK_OK(swarf_stock_create_box(&outer, &options, &stock)) ||
         !CHECK_OK(swarf_stock_create_box(&inner, &options, &cut)))
@@ -428,7 +408,7 @@ static void check_sides(void)
             angle[k] = test_random_in(&random, -3, 3);
             shift[k] = test_random_in(&random, -50, 50);
         }
-        const swarf_placement there = make_placement(angle, shift);
+        const swarf_placement there = placement_make(angle, shift);
         CHECK_OK(swarf_stock_box(stock, &box));
         finer = place(stock, &there, NULL, 0.35 * own, 0);
         for (int p = 0; p < POINTS; p++) {
@@ -478,7 +458,7 @@ static int cancel_at_once(void *user, double fraction)
 /* Turned over and cut again: every vertex of the mesh on the true surface of both set-ups, and it tells of which. */
 static void check_chain(const double angle[3], int lossless)
 {
-    const swarf_placement over = make_placement(angle, (double[]){1, 2, -3}), back = swarf_placement_inverse(&over);
+    const swarf_placement over = placement_make(angle, (double[]){1, 2, -3}), back = swarf_placement_inverse(&over);
     swarf_stock *stock = make_block(voxel);
     job top = first_job();
     swarf_surface *first = NULL, *second = NULL;
@@ -565,9 +545,9 @@ static void check_errors(void)
     CHECK_FAILS(swarf_placement_create(rows, &placement), SWARF_ERROR_ARGUMENT, "shifted by 2e+06 mm in x");
 
     swarf_stock *stock = make_block(1), *placed = NULL;
-    const swarf_placement turn = make_placement((double[]){0, 0, 0.3}, (double[]){0, 0, 0});
+    const swarf_placement turn = placement_make((double[]){0, 0, 0.3}, (double[]){0, 0, 0});
     swarf_place_options options = swarf_place_options_default();
-    const swarf_placement over = make_placement((double[]){pi, 0, 0}, (double[]){0, 0, 0});
+    const swarf_placement over = placement_make((double[]){pi, 0, 0}, (double[]){0, 0, 0});
     options = swarf_place_options_default();
     options.memory_limit = 10000;
     CHECK_FAILS(swarf_stock_place(stock, &over, &options, NULL, &placed, NULL), SWARF_ERROR_MEMORY, "turned it needs");
