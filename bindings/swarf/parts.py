@@ -6,6 +6,7 @@ import math
 from typing import Any, Callable, Optional, Protocol, Sequence
 
 from ._native import GeometryError, Mesh, Solid, Surface
+from .progress import Report
 from .records import rows
 from .shapes import Vector, add, cross, middle
 
@@ -92,9 +93,9 @@ def parse_plane(text: str) -> tuple[tuple[float, float, float], tuple[float, flo
     raise ValueError(f"plane {text!r}: wanted {PLANE_HELP}")
 
 
-def thinnest(mesh: Mesh) -> dict[str, Any]:
+def thinnest(mesh: Mesh, progress: Report = None) -> dict[str, Any]:
     """The least wall thickness of a mesh, mm, and the middle of the triangle where it is; plain types."""
-    values = mesh.thickness()
+    values = mesh.thickness(progress=progress)
     if not len(values):
         return {"least_mm": None, "place": None}
     least, where = min((value, index) for index, value in enumerate(values))

@@ -105,28 +105,43 @@ def check_budget(opened):
     opened.budget.setValue(28)
 
 
+def outlines():
+    """How many panels show the curves of a plane in the 3D view."""
+    graph = Gui.ActiveDocument.ActiveView.getSceneGraph()
+    return sum(graph.getChild(place).getName().getString() == "SwarfCurves" for place in range(graph.getNumChildren()))
+
+
 def check_section(obj):
     """The command, wires across the slot in one undoable step, and a plane that misses."""
     from freecad.swarf_cam.gui import sectioning
 
     document = obj.Document
     Gui.runCommand("Swarf_Section", 0)
-    wait_for(lambda: Gui.getMainWindow().findChild(QtWidgets.QWidget, "SwarfSectionPanel") is not None, "the panel")
+    wait_for(lambda: Gui.Control.activeDialog() and outlines() == 1, "the panel")
     screenshot("section_panel.png")
     close_panel()
     opened = sectioning.show_panel(obj)
     assert abs(opened.position.value() + 5) < 1e-3 and "-10" in opened.extent.text(), "the middle of the stock's height"
+    wait_for(lambda: opened.curves.count == 1, "the outline in the 3D view")
+    opened.position.setValue(-1)
+    wait_for(lambda: opened.curves.count == 2, "the outlines of both sides of the slot")
+    assert outlines() == 1
     opened.axis.setCurrentIndex(0)
     assert abs(opened.position.value() - 20) < 1e-3, opened.position.value()
-    opened.position.setValue(500)
+    for place in (1, 2, 3, 500):  # the last counts
+        opened.position.setValue(place)
     undo, count = document.UndoCount, len(document.Objects)
     opened.accept()
+    wait_for(lambda: opened.message.text(), "a plane that misses")
     assert "does not cut" in opened.message.text() and not opened.closed, opened.message.text()
-    assert (document.UndoCount, len(document.Objects)) == (undo, count)
+    assert (document.UndoCount, len(document.Objects), opened.curves.count) == (undo, count, 0)
     screenshot("section_missed.png")
     opened.position.setValue(12.5)
+    wait_for(lambda: opened.curves.count == 1, "the outline in the 3D view")
+    screenshot("section_preview.png")
     opened.accept()
     no_panel()
+    assert outlines() == 0, "the panel's outline stays in the 3D view"
     made = document.Objects[-1]
     assert document.UndoCount == undo + 1 and len(made.Shape.Wires) == 1 and made.Shape.Wires[0].isClosed()
     box = made.Shape.BoundBox
@@ -134,6 +149,80 @@ def check_section(obj):
     assert abs(made.Shape.Length - (2 * 20 + 2 * 10 + 2 * 5)) < 1e-2, made.Shape.Length
     Gui.Selection.clearSelection()
     screenshot("section.png")
+    document.undo()
+    assert len(document.Objects) == count
+
+
+def check_split(obj):
+    """The command, its outline gone with the panel however that closes; parts in one undoable step, and a plane that
+    misses."""
+    from freecad.swarf_cam.gui import splitting
+
+    document = obj.Document
+    undo, count = document.UndoCount, len(document.Objects)
+    Gui.runCommand("Swarf_Split", 0)
+    wait_for(lambda: outlines() == 1, "the panel")
+    close_panel()
+    wait_for(lambda: outlines() == 0, "the outline gone with the panel")
+    opened = splitting.show_panel(obj)
+    opened.position.setValue(20)
+    opened.accept()
+    wait_for(lambda: not opened.working, "refusal of a plane that misses")
+    assert "does not cut" in opened.message.text() and not opened.closed, opened.message.text()
+    assert (document.UndoCount, len(document.Objects)) == (undo, count)
+    opened.position.setValue(-3)
+    opened.each.setChecked(True)
+    opened.accept()
+    cancel_at_last(opened)
+    assert (document.UndoCount, len(document.Objects)) == (undo, count)
+    wait_for(lambda: opened.curves.count == 2, "the outlines of both sides of the slot")
+    screenshot("split_panel.png")
+    opened.accept()
+    no_panel()
+    made = document.Objects[count:]
+    assert document.UndoCount == undo + 1 and len(made) == 3 and not obj.Visibility
+    assert all(part.Mesh.isSolid() for part in made)
+    assert abs(sum(part.Mesh.Volume for part in made) - obj.Mesh.Volume) < 1e-3 * obj.Mesh.Volume
+    assert len({part.ViewObject.ShapeColor for part in made}) == 3 and outlines() == 0
+    Gui.Selection.clearSelection()
+    screenshot("split.png")
+    document.undo()
+    assert len(document.Objects) == count and obj.Visibility
+
+
+def check_measure(obj):
+    """The command, its table, and the sheet that is made of it."""
+    from freecad.swarf_cam.gui import measuring
+
+    document = obj.Document
+    undo, count = document.UndoCount, len(document.Objects)
+    Gui.runCommand("Swarf_Measure", 0)
+    wait_for(lambda: Gui.Control.activeDialog(), "the panel")
+    close_panel()  # while it measures
+    opened = measuring.show_panel(obj)
+    assert not opened.put.isEnabled()
+    wait_for(lambda: not opened.working, "the measures")
+    table = opened.table
+    assert opened.put.isEnabled() and [opened.shell.itemText(k) for k in (0, 1)] == ["Whole", "Piece 1"]
+    rows = [(table.item(k, 0).text().strip(), table.item(k, 1).text().strip() if table.item(k, 1) else None)
+            for k in range(table.rowCount())]
+    assert rows[0] == ("Volume", "6800 mm³") and ("Holes through it", "0") in rows, rows
+    assert rows[4:8] == [("Size, mm", None), ("X", "40.0000"), ("Y", "20.0000"), ("Z", "10.0000")], rows
+    for label, value in rows:
+        width = sum(table.fontMetrics().boundingRect(text or "").width() for text in (label, value))
+        assert width < table.viewport().width() - 20, "%s %s is not seen" % (label, value)
+    opened.shell.setCurrentIndex(1)
+    assert "Thinnest wall" in [label for label, _ in rows] and table.rowCount() == len(rows) - 5
+    opened.shell.setCurrentIndex(0)
+    screenshot("measures.png")
+    opened.put.click()
+    sheet, = document.Objects[count:]
+    assert document.UndoCount == undo + 1 and sheet.TypeId == "Spreadsheet::Sheet" and sheet.Label in \
+        opened.message.text(), opened.message.text()
+    sheet.ViewObject.doubleClicked()
+    screenshot("measures_sheet.png")
+    opened.reject()
+    no_panel()
     document.undo()
     assert len(document.Objects) == count
 
@@ -286,6 +375,8 @@ def check():
     check_export(obj)
     Gui.Selection.addSelection(document.Name, obj.Name)
     check_section(obj)
+    check_split(obj)
+    check_measure(obj)
     check_next(document, obj)
 
     cam = "CAMWorkbench" if "CAMWorkbench" in Gui.listWorkbenches() else "PathWorkbench"

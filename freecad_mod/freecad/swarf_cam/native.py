@@ -136,6 +136,16 @@ def pieces(shells, triangles_of):
     return _package("parts").pieces(shells, lambda place: mesh(*triangles_of(place)))
 
 
+def pieces_of(mesh):
+    """Places in mesh.shells() of the shells of each piece, its cavities behind it."""
+    return _package("parts").pieces_of(mesh)
+
+
+def thinnest(mesh, progress=None):
+    """The least wall thickness of a mesh and where, as swarf.parts.thinnest() tells them. swarf.Cancelled."""
+    return _package("parts").thinnest(mesh, progress)
+
+
 def to_program(table):
     """swarf.Program of a MoveTable."""
     return table.play(load().Program())

@@ -15,7 +15,7 @@ from .. import native
 from ..core import steps
 from ..core.errors import JobError
 from . import job as jobs
-from . import setups, wording
+from . import pieces, setups, wording
 
 translate = FreeCAD.Qt.translate
 
@@ -256,27 +256,20 @@ def _made_shape(obj):
 
 def _add(obj, shape, transaction, name, label):
     """A Part object beside a simulation."""
-    document = obj.Document
-    document.openTransaction(transaction)
-    try:
-        made = document.addObject("Part::Feature", name)
+    def make():
+        made = obj.Document.addObject("Part::Feature", name)
         made.Label = "%s: %s" % (label, obj.Label)
         made.Shape = shape
-    except BaseException:
-        document.abortTransaction()
-        raise
-    document.commitTransaction()
-    return made
+        return made
+
+    return pieces.in_one_step(obj.Document, transaction, make)
 
 
-def section(obj, point, normal):
+def section(obj, point, normal, curves=None):
     """Compound of the wires along which a plane cuts the mesh of a simulation; FreeCAD's exporters write it as DXF and
-    SVG. JobError where it cuts nothing."""
-    vertices, facets = obj.Mesh.Topology
-    mesh = native.load().Mesh([tuple(vertex) for vertex in vertices], facets)
-    lines = mesh.section(tuple(point), tuple(normal))
+    SVG. curves: what Body.section() says of that plane, where it has been asked. JobError where it cuts nothing."""
     wires = []
-    for line in lines:
+    for line in pieces.body_of(obj).section(point, normal) if curves is None else curves:
         corners = [FreeCAD.Vector(*corner) for corner in line]
         kept = [corner for index, corner in enumerate(corners) if (corner - corners[index - 1]).Length > 1e-6]
         if len(kept) > 2:
@@ -286,6 +279,6 @@ def section(obj, point, normal):
     return Part.makeCompound(wires)
 
 
-def add_section(obj, point, normal):
+def add_section(obj, point, normal, curves=None):
     """A Part object with section() in the document, in one undoable step -> it."""
-    return _add(obj, section(obj, point, normal), "Section", "Section", translate("Swarf", "Section"))
+    return _add(obj, section(obj, point, normal, curves), "Section", "Section", translate("Swarf", "Section"))

@@ -12,7 +12,8 @@ from ..app import simulation
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
-NAMES = ["Swarf_Live", "Swarf_Simulate", "Swarf_Update", "Swarf_Export", "Swarf_Section"]
+NAMES = ["Swarf_Live", "Swarf_Simulate", "Swarf_Update", "Swarf_Export", "Swarf_Section", "Swarf_Split",
+         "Swarf_Measure"]
 
 
 def chosen_job():
@@ -171,6 +172,50 @@ class Section:
         show_panel(chosen_simulation())
 
 
+class Split:
+    """Put what is left, cut by a plane, into the document as meshes."""
+
+    def GetResources(self):
+        """Texts and icon."""
+        return {"Pixmap": os.path.join(ICONS, "swarf-split.svg"),
+                "MenuText": QT_TRANSLATE_NOOP("Swarf_Split", "Split the stock"),
+                "ToolTip": QT_TRANSLATE_NOOP(
+                    "Swarf_Split", "Split what is left of the stock by a plane into closed meshes")}
+
+    def IsActive(self):
+        """Whenever a simulation with a result is chosen."""
+        return result_is_chosen()
+
+    def Activated(self):
+        """Open the panel."""
+        from .splitting import show_panel
+
+        show_panel(chosen_simulation())
+
+
+class Measure:
+    """Tell the measures of what is left."""
+
+    def GetResources(self):
+        """Texts and icon."""
+        return {"Pixmap": os.path.join(ICONS, "swarf-measure.svg"),
+                "MenuText": QT_TRANSLATE_NOOP("Swarf_Measure", "Measures of the stock"),
+                "ToolTip": QT_TRANSLATE_NOOP(
+                    "Swarf_Measure",
+                    "Volume, area, size, centre of mass, inertia, holes and thinnest wall of what is left of the "
+                    "stock, of the whole and of each shell")}
+
+    def IsActive(self):
+        """Whenever a simulation with a result is chosen."""
+        return result_is_chosen()
+
+    def Activated(self):
+        """Open the panel."""
+        from .measuring import show_panel
+
+        show_panel(chosen_simulation())
+
+
 class CamEntries:
     """Puts the commands beside FreeCAD's own simulators in the CAM workbench; from FreeCAD 0.21 on."""
 
@@ -212,6 +257,8 @@ def register():
     Gui.addCommand("Swarf_Update", Update())
     Gui.addCommand("Swarf_Export", Export())
     Gui.addCommand("Swarf_Section", Section())
+    Gui.addCommand("Swarf_Split", Split())
+    Gui.addCommand("Swarf_Measure", Measure())
     if hasattr(Gui, "addWorkbenchManipulator"):
         Gui.addWorkbenchManipulator(CamEntries())
     else:

@@ -4,15 +4,13 @@
 import os
 
 import FreeCAD
-import FreeCADGui as Gui
 
 from .. import native
 from ..app import model
 from ..core.errors import JobError
-from . import numbers, settings
+from . import numbers, settings, taskpanel
 from .qt import QtWidgets, choice
 from .slices import Slices
-from .taskpanel import TaskPanel
 from .worker import Worker
 
 translate = FreeCAD.Qt.translate
@@ -23,7 +21,7 @@ ERROR_DECIMALS = 4
 BUDGET_MAX = 2 ** 31 - 1
 
 
-class ExportPanel(TaskPanel):
+class ExportPanel(taskpanel.TaskPanel):
     """Task panel for one simulation object."""
 
     def __init__(self, obj):
@@ -180,9 +178,4 @@ class ExportPanel(TaskPanel):
 
 def show_panel(obj):
     """Open the panel, None when another task is open."""
-    if Gui.Control.activeDialog():
-        FreeCAD.Console.PrintError(translate("Swarf", "Swarf: close the open task first\n"))
-        return None
-    panel = ExportPanel(obj)
-    Gui.Control.showDialog(panel)
-    return panel
+    return taskpanel.show(lambda: ExportPanel(obj))

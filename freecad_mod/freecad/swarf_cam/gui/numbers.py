@@ -31,6 +31,13 @@ def count(value):
     return QtCore.QLocale().toString(int(value))
 
 
+def measure(value, unit):
+    """A measure: a length to a tenth of a micrometre, a number of things, or what has seven digits that count."""
+    if isinstance(value, int):
+        return count(value)
+    return text(value, 4) if unit == "mm" else _pointed("%.7g" % (value + 0.0))
+
+
 def deviation(value):
     """A deviation in mm, to the micrometre."""
     return text(value, 3, True)

@@ -5,6 +5,7 @@ they are and can be broken off."""
 import FreeCAD
 import FreeCADGui as Gui
 
+from ..core.errors import JobError
 from .qt import QtWidgets, flags
 
 translate = FreeCAD.Qt.translate
@@ -20,6 +21,7 @@ class TaskPanel:
         self.form = QtWidgets.QWidget()
         self.form.setObjectName(name)
         self.form.setWindowTitle(title)
+        self.form.destroyed.connect(self.gone)
         self.bar = QtWidgets.QProgressBar()
         self.message = QtWidgets.QLabel()
 
@@ -73,6 +75,12 @@ class TaskPanel:
         """Fraction done."""
         self.bar.setValue(int(1000 * fraction))
 
+    def gone(self, *_):
+        """The widgets are no more, whoever closed the dialog."""
+        self.closed = True
+        if self.worker is not None:
+            self.worker.cancel()
+
     def fail(self, error):
         """In the panel, where the user looks, and in the report view, where it stays."""
         text = str(error) or type(error).__name__
@@ -84,3 +92,18 @@ class TaskPanel:
         if not self.closed:
             self.closed = True
             Gui.Control.closeDialog()
+
+
+def show(make):
+    """Open the panel that make() makes -> it; None when another task is open, or there is nothing for it to do, which
+    the report view tells."""
+    if Gui.Control.activeDialog():
+        FreeCAD.Console.PrintError(translate("Swarf", "Swarf: close the open task first\n"))
+        return None
+    try:
+        panel = make()
+    except JobError as error:
+        FreeCAD.Console.PrintError("Swarf: %s\n" % error)
+        return None
+    Gui.Control.showDialog(panel)
+    return panel

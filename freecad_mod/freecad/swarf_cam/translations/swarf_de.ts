@@ -171,6 +171,10 @@
             <translation>Aufmaß</translation>
         </message>
         <message>
+            <source>Area</source>
+            <translation>Fläche</translation>
+        </message>
+        <message>
             <source>Area of the surface by its deviation</source>
             <translation>Fläche nach ihrer Abweichung</translation>
         </message>
@@ -197,6 +201,14 @@
         <message>
             <source>Both</source>
             <translation>Beides</translation>
+        </message>
+        <message>
+            <source>Box from</source>
+            <translation>Quader von</translation>
+        </message>
+        <message>
+            <source>Box to</source>
+            <translation>Quader bis</translation>
         </message>
         <message>
             <source>By age</source>
@@ -229,6 +241,10 @@
         <message>
             <source>Cancelling ...</source>
             <translation>Wird abgebrochen ...</translation>
+        </message>
+        <message>
+            <source>Centre of mass</source>
+            <translation>Schwerpunkt</translation>
         </message>
         <message>
             <source>Check</source>
@@ -395,6 +411,14 @@
             <translation>Halter</translation>
         </message>
         <message>
+            <source>Holes through it</source>
+            <translation>Löcher hindurch</translation>
+        </message>
+        <message>
+            <source>Hollow {0}</source>
+            <translation>Hohlraum {0}</translation>
+        </message>
+        <message>
             <source>How fast (Up, Down)</source>
             <translation>Wie schnell (Auf, Ab)</translation>
         </message>
@@ -409,6 +433,14 @@
         <message>
             <source>In the document: {0}</source>
             <translation>Im Dokument: {0}</translation>
+        </message>
+        <message>
+            <source>Inertia</source>
+            <translation>Trägheit</translation>
+        </message>
+        <message>
+            <source>Inertia is about the centre of mass and of density 1: times kg/mm³ it is kg mm²</source>
+            <translation>Die Trägheit ist die um den Schwerpunkt bei der Dichte 1: mal kg/mm³ ist sie kg mm²</translation>
         </message>
         <message>
             <source>It lies</source>
@@ -467,6 +499,14 @@
             <translation>Mittel, quadratisches Mittel</translation>
         </message>
         <message>
+            <source>Measures</source>
+            <translation>Maße</translation>
+        </message>
+        <message>
+            <source>Measures of the stock</source>
+            <translation>Maße des Rohteils</translation>
+        </message>
+        <message>
             <source>Milling simulation</source>
             <translation>Frässimulation</translation>
         </message>
@@ -523,6 +563,10 @@
             <translation>Operationen</translation>
         </message>
         <message>
+            <source>Part {0}</source>
+            <translation>Teil {0}</translation>
+        </message>
+        <message>
             <source>Perspective</source>
             <translation>Perspektive</translation>
         </message>
@@ -537,6 +581,10 @@
         <message>
             <source>Picture or animation</source>
             <translation>Bild oder Animation</translation>
+        </message>
+        <message>
+            <source>Piece {0}</source>
+            <translation>Stück {0}</translation>
         </message>
         <message>
             <source>Place of the section</source>
@@ -563,8 +611,20 @@
             <translation>Lage</translation>
         </message>
         <message>
+            <source>Principal axis</source>
+            <translation>Hauptachse</translation>
+        </message>
+        <message>
+            <source>Principal moment</source>
+            <translation>Hauptträgheitsmoment</translation>
+        </message>
+        <message>
             <source>Program</source>
             <translation>Programm</translation>
+        </message>
+        <message>
+            <source>Put into a spreadsheet</source>
+            <translation>In eine Tabelle übernehmen</translation>
         </message>
         <message>
             <source>Put the result into the document</source>
@@ -687,6 +747,10 @@
             <translation>Simulation</translation>
         </message>
         <message>
+            <source>Size</source>
+            <translation>Größe</translation>
+        </message>
+        <message>
             <source>Slope</source>
             <translation>Neigung</translation>
         </message>
@@ -701,6 +765,10 @@
         <message>
             <source>Spindle</source>
             <translation>Spindel</translation>
+        </message>
+        <message>
+            <source>Split the stock</source>
+            <translation>Rohteil teilen</translation>
         </message>
         <message>
             <source>Starts in material</source>
@@ -849,6 +917,14 @@
             <translation>Die Werkzeugsteuerung ist fort.</translation>
         </message>
         <message>
+            <source>Thinnest at</source>
+            <translation>Am dünnsten bei</translation>
+        </message>
+        <message>
+            <source>Thinnest wall</source>
+            <translation>Dünnste Wand</translation>
+        </message>
+        <message>
             <source>Time</source>
             <translation>Zeit</translation>
         </message>
@@ -885,6 +961,10 @@
             <translation>Dreiecke</translation>
         </message>
         <message>
+            <source>Volume</source>
+            <translation>Volumen</translation>
+        </message>
+        <message>
             <source>Voxel size</source>
             <translation>Voxelgröße</translation>
         </message>
@@ -901,6 +981,10 @@
             <translation>Warnung</translation>
         </message>
         <message>
+            <source>What hangs together becomes a mesh, not all on one side of the plane</source>
+            <translation>Was zusammenhängt, wird ein Netz, nicht alles auf einer Seite der Ebene</translation>
+        </message>
+        <message>
             <source>What holds the stock: nothing may touch it</source>
             <translation>Was das Rohteil hält: nichts darf es berühren</translation>
         </message>
@@ -909,12 +993,20 @@
             <translation>Was auf dem Modell stehen bleiben soll: es zählt nicht als Abweichung</translation>
         </message>
         <message>
+            <source>What is measured: all of it, or a shell that hangs together</source>
+            <translation>Was gemessen wird: alles, oder eine Schale, die zusammenhängt</translation>
+        </message>
+        <message>
             <source>What the colours of the stock show</source>
             <translation>Was die Farben des Rohteils zeigen</translation>
         </message>
         <message>
             <source>Where to stop by itself</source>
             <translation>Wo von selbst angehalten wird</translation>
+        </message>
+        <message>
+            <source>Whole</source>
+            <translation>Ganzes</translation>
         </message>
         <message>
             <source>Within the tolerance</source>
@@ -955,6 +1047,10 @@
         <message>
             <source>by wall thickness</source>
             <translation>nach Wandstärke</translation>
+        </message>
+        <message>
+            <source>each piece on its own</source>
+            <translation>jedes Stück für sich</translation>
         </message>
         <message>
             <source>error</source>
@@ -1027,6 +1123,10 @@
         <message>
             <source>where it was</source>
             <translation>wo es war</translation>
+        </message>
+        <message>
+            <source>{0} smaller shells are not listed</source>
+            <translation>{0} kleinere Schalen sind nicht aufgeführt</translation>
         </message>
         <message>
             <source>{0} voxels along the longest edge, up to {1}</source>
@@ -1403,6 +1503,17 @@
         </message>
     </context>
     <context>
+        <name>Swarf_Measure</name>
+        <message>
+            <source>Measures of the stock</source>
+            <translation>Maße des Rohteils</translation>
+        </message>
+        <message>
+            <source>Volume, area, size, centre of mass, inertia, holes and thinnest wall of what is left of the stock, of the whole and of each shell</source>
+            <translation>Volumen, Fläche, Größe, Schwerpunkt, Trägheit, Löcher und dünnste Wand dessen, was vom Rohteil bleibt, im Ganzen und je Schale</translation>
+        </message>
+    </context>
+    <context>
         <name>Swarf_Section</name>
         <message>
             <source>Add the wires along which a plane cuts what is left of the stock: to measure, to export as DXF or SVG</source>
@@ -1422,6 +1533,17 @@
         <message>
             <source>Simulate milling</source>
             <translation>Fräsen simulieren</translation>
+        </message>
+    </context>
+    <context>
+        <name>Swarf_Split</name>
+        <message>
+            <source>Split the stock</source>
+            <translation>Rohteil teilen</translation>
+        </message>
+        <message>
+            <source>Split what is left of the stock by a plane into closed meshes</source>
+            <translation>Teilt, was vom Rohteil bleibt, an einer Ebene in geschlossene Netze</translation>
         </message>
     </context>
     <context>

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The mesh of what is left of a stock in swarf's hands: cut by planes, taken apart, measured. Imports no FreeCAD,
+touches no document: runs in any thread."""
+
+import os
+import tempfile
+
+from . import native
+from .core import measures
+from .core.errors import JobError
+
+
+class Body:
+    """A closed mesh, handed over as a .ply file by write(its path) at once: numbers in Python would take ten times as
+    long. It is read when it is needed first."""
+
+    def __init__(self, write):
+        self._folder = tempfile.TemporaryDirectory(prefix="swarf-")
+        self._count = 0
+        self._mesh = None
+        write(self._file("body.ply"))
+
+    def _file(self, name):
+        return os.path.join(self._folder.name, name)
+
+    @property
+    def mesh(self):
+        """swarf.Mesh. OSError, swarf.Error."""
+        if self._mesh is None:
+            self._mesh = native.load().Mesh.read(self._file("body.ply"))
+        return self._mesh
+
+    def section(self, point, normal):
+        """Closed polylines along which a plane cuts it, of points (x, y, z)."""
+        return self.mesh.section(tuple(point), tuple(normal))
+
+    def split(self, point, normal, each=False, progress=None):
+        """Files of its parts on both sides of a plane, each closed: first what lies against the normal; or of each
+        piece of them. They live as long as the body. JobError where the plane misses it, swarf.Error where it is open,
+        swarf.Cancelled."""
+        sides = self.mesh.split(tuple(point), tuple(normal))
+        if not all(side.triangle_count for side in sides):
+            raise JobError("the plane does not cut what is left of the stock")
+        found = [side.keep_shells(shells) for side in sides for shells in native.pieces_of(side)] if each else sides
+        files = []
+        for number, part in enumerate(found):
+            if progress is not None and progress(number / len(found)):
+                raise native.load().Cancelled("cancelled")
+            self._count += 1
+            files.append(self._file("part-%d.ply" % self._count))
+            part.write(files[-1])
+        return files
+
+    def measures(self, progress=None):
+        """core.measures.Table of the whole and its shells. swarf.Cancelled."""
+        whole, shells = self.mesh.measure(), self.mesh.shells()
+        return measures.table(whole, shells, native.thinnest(self.mesh, progress))
