@@ -15,7 +15,7 @@ from .records import rows
 from .shapes import PLANE, Shape, add, cross, unit
 from .wording import Said
 
-__all__ = ["SUFFIXES", "Written", "facets", "missing", "write", "write_facets"]
+__all__ = ["SUFFIXES", "Cut", "Written", "as_cut", "facets", "write", "write_cut", "write_facets"]
 
 SUFFIXES = (".step", ".stp")
 
@@ -44,6 +44,19 @@ class Written:
         if self.reason:
             return f"{self.faces} facets, no faces as they were cut: {self.reason}"
         return self.missing
+
+
+@dataclass
+class Cut:
+    """Faces of what is left of a stock as they were cut, ``made`` of a mesh that is within ``error_mm``; or the
+    ``reason`` why there are none, as that nothing is left. ``share``: the part of the area that such faces take, None
+    where it was not measured."""
+
+    mesh: Mesh
+    error_mm: float
+    made: Optional[brep.Brep] = None
+    reason: str = ""
+    share: Optional[float] = None
 
 
 def facets(mesh: Mesh, progress: Report = None) -> brep.Brep:
@@ -89,13 +102,13 @@ def _add(made: brep.Brep, mesh: Mesh) -> None:
     made.shells.append(list(range(first, len(made.faces))))
 
 
-def why(problem: ValueError) -> str:
+def _why(problem: ValueError) -> str:
     """What such an error says, a wording.Said where it is one of faces that are not possible."""
     said = problem.args[0] if problem.args else ""
     return said if isinstance(said, Said) else str(problem)
 
 
-def missing(made: brep.Brep) -> Optional[Said]:
+def _missing(made: brep.Brep) -> Optional[Said]:
     """Where a solid of faces as they were cut lacks a narrow one; None where it has all of them."""
     if made.off_mm <= SLOPPY:
         return None
@@ -107,7 +120,7 @@ def _written(made: brep.Brep, path: str, reason: Optional[str], progress: Report
     step.write(made, path, progress=progress)
     if progress is not None:
         progress(1.0)  # it is there: too late to cancel
-    return Written(path, len(made.faces), reason, None if reason else made.off_mm, missing(made))
+    return Written(path, len(made.faces), reason, None if reason else made.off_mm, _missing(made))
 
 
 def write_facets(mesh: Mesh, path: str, reason: str, progress: Report = None) -> Written:
@@ -120,20 +133,37 @@ def write_facets(mesh: Mesh, path: str, reason: str, progress: Report = None) ->
     return _written(made, path, reason, share(progress, 0.7, 1))
 
 
+def as_cut(stock: Stock, surface: Surface, *, only_largest: bool = False, progress: Report = None) -> Cut:
+    """What is left of a stock after all moves of its Surface, bounded by planes, cylinders, cones, spheres and tori, if
+    it is by them alone."""
+    error = brep.MESH_ERROR * stock.voxel
+    mesh = Mesh.from_stock(stock, error, surface=surface, progress=share(progress, 0, 0.5))
+    if not mesh.triangle_count:
+        return Cut(mesh, error, reason=Said("place empty"))
+    mesh = largest(mesh) if only_largest else mesh
+    if mesh.triangle_count > TRIANGLES_MAX:
+        return Cut(mesh, error, reason=Said("too many triangles", triangles=mesh.triangle_count, most=TRIANGLES_MAX))
+    try:
+        return Cut(mesh, error, brep.make(mesh, surface, stock.voxel, progress=share(progress, 0.5, 1)), share=1.0)
+    except brep.NotAnalytic as problem:
+        return Cut(mesh, error, reason=problem.said, share=problem.share)
+    except ValueError as problem:  # a piece that is no closed mesh: facets show what there is
+        return Cut(mesh, error, reason=_why(problem))
+
+
+def write_cut(made: brep.Brep, path: str, progress: Report = None) -> Written:
+    """A STEP file of faces as they were cut. OSError."""
+    return _written(made, path, None, progress)
+
+
 def write(stock: Stock, surface: Surface, path: str, *, error: float, only_largest: bool = False,
           progress: Report = None) -> Written:
-    """A STEP file of what is left of a stock after all moves of its Surface; of facets, with this error (mm), where it
-    is not bounded by planes, cylinders, cones, spheres and tori alone. ValueError where it is too much even for facets,
-    or nothing is left; OSError."""
-    mesh = Mesh.from_stock(stock, brep.MESH_ERROR * stock.voxel, surface=surface, progress=share(progress, 0, 0.4))
-    if not mesh.triangle_count:
-        raise ValueError(f"{path}: cannot be written: {Said('place empty')}")
-    mesh = largest(mesh) if only_largest else mesh
-    try:
-        if mesh.triangle_count > TRIANGLES_MAX:
-            raise ValueError(Said("too many triangles", triangles=mesh.triangle_count, most=TRIANGLES_MAX))
-        made = brep.make(mesh, surface, stock.voxel, progress=share(progress, 0.4, 0.8))
-    except ValueError as problem:  # brep.NotAnalytic among them
-        coarse = Mesh.from_stock(stock, error, surface=surface, progress=share(progress, 0.8, 0.9))
-        return write_facets(largest(coarse) if only_largest else coarse, path, why(problem), share(progress, 0.9, 1))
-    return _written(made, path, None, share(progress, 0.8, 1))
+    """A STEP file of what is left of a stock after all moves of its Surface: as_cut(), where it is that, else of facets
+    with this error (mm). ValueError where it is too much even for facets, or nothing is left; OSError."""
+    cut = as_cut(stock, surface, only_largest=only_largest, progress=share(progress, 0, 0.8))
+    if not cut.mesh.triangle_count:
+        raise ValueError(f"{path}: cannot be written: {cut.reason}")
+    if cut.made is not None:
+        return write_cut(cut.made, path, share(progress, 0.8, 1))
+    coarse = Mesh.from_stock(stock, error, surface=surface, progress=share(progress, 0.8, 0.9))
+    return write_facets(largest(coarse) if only_largest else coarse, path, cut.reason, share(progress, 0.9, 1))

@@ -289,26 +289,16 @@ class Analytic:
 def export_analytic(data, stock_file, path, largest=False, progress=None):
     """Write what is left of a JobData's stock as a STEP file of analytic faces -> Analytic, without a file where the
     stock is not bounded by such faces alone. Raises and the rest as export()."""
-    swarf = load()
-    brep, step, solids, parts, shares = map(_package, ("brep", "step", "solids", "parts", "progress"))
-    share = functools.partial(shares.share, progress)
+    solids = _package("solids")
+    share = functools.partial(_package("progress").share, progress)
     _, left, surface = _exact(data, stock_file, share(0, 0.4))
-    error = brep.MESH_ERROR * left.voxel
-    mesh = swarf.Mesh.from_stock(left, error, surface=surface, progress=share(0.4, 0.7))
-    if not mesh.triangle_count:
+    cut = solids.as_cut(left, surface, only_largest=largest, progress=share(0.4, 0.9))
+    if not cut.mesh.triangle_count:
         raise JobError("nothing is left of the stock")
-    if largest:
-        mesh = parts.largest(mesh)
-    if mesh.triangle_count > solids.TRIANGLES_MAX:
-        return Analytic(None, said("too many triangles", triangles=mesh.triangle_count, most=solids.TRIANGLES_MAX))
-    try:
-        made = brep.make(mesh, surface, left.voxel, progress=share(0.7, 0.9))
-    except brep.NotAnalytic as problem:
-        return Analytic(problem.share, problem.said)
-    except ValueError as problem:  # a piece that is no closed mesh: facets show what there is
-        return Analytic(None, solids.why(problem))
-    step.write(made, path, progress=share(0.9, 1))
-    return Analytic(1.0, None, mesh.volume, mesh.area, error, len(made.faces), solids.missing(made))
+    if cut.made is None:
+        return Analytic(cut.share, cut.reason)
+    written = solids.write_cut(cut.made, path, share(0.9, 1))
+    return Analytic(cut.share, None, cut.mesh.volume, cut.mesh.area, cut.error_mm, written.faces, written.missing)
 
 
 def export(data, stock_file, path, error_mm=None, budget=0, colour=None, tolerance_mm=0.05, allowance_mm=0.0,
