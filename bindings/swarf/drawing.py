@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Iterable, Sequence
 
 from .files import write_text
-from .shapes import Vector, add, cross, dot, unit
+from .vectors import Vector, add, cross, dot, unit
 
 __all__ = ["SUFFIXES", "flat", "write"]
 

@@ -8,7 +8,7 @@ from typing import Any, Callable, Optional, Protocol, Sequence
 from ._native import GeometryError, Mesh, Solid, Surface
 from .progress import Report
 from .records import rows
-from .shapes import Vector, add, cross, middle
+from .vectors import Vector, add, cross, middle
 
 #: What a plane in words looks like.
 PLANE_HELP = "x=MM, y=MM, z=MM, or X,Y,Z,NX,NY,NZ: a point and the normal"

@@ -8,9 +8,10 @@ import sys
 import pytest
 
 import swarf
-from swarf import brep, regions, shapes, step, volume
 from swarf.job import Job
-from swarf.shapes import CONE, CYLINDER, PLANE, SPHERE, TORUS, Shape, add, dot
+from swarf.solids import brep, regions, shapes, step, volume
+from swarf.solids.shapes import CONE, CYLINDER, PLANE, SPHERE, TORUS, Shape
+from swarf.vectors import add, dot
 
 VOXEL = 0.4
 BLOCK = {"kind": "box", "lo": (0, 0, -10), "hi": (60, 40, 0)}

@@ -10,9 +10,10 @@ import pytest
 
 import swarf
 from conftest import GCODE
-from swarf import brep, parts, regions, solids, strips
+from swarf import parts, solids
+from swarf.solids import brep, export, regions, strips
 from swarf.cli import main
-from swarf.shapes import add, cross, dot
+from swarf.vectors import add, cross, dot
 
 WORDS = ("--stock", "box:0,0,-10,60,40,0", "--tool", "1=flat:d=6,l=20", "--voxel", "0.5")
 
@@ -154,7 +155,7 @@ def test_meshes_and_too_many(tmp_path, capsys, monkeypatch):
     assert main(words) == 0 and "swarf simulate --output knows" in capsys.readouterr().err
     assert (tmp_path / "part.step").read_text().count("ADVANCED_FACE(") >= 12
     (tmp_path / "part.step").unlink()
-    monkeypatch.setattr(solids, "FACETS_MAX", 3)
+    monkeypatch.setattr(export, "FACETS_MAX", 3)
     assert main(words) == 2 and "too many for facets" in capsys.readouterr().err
     assert not (tmp_path / "part.step").exists()
 
@@ -208,7 +209,7 @@ def test_a_triangle_without_area_is_no_face():
 def test_a_refused_solid_leaves_the_rest(tmp_path, capsys, monkeypatch):
     program = tmp_path / "ramp.nc"
     program.write_text("G21 G90\nT1 M6\nS1000 M3\nG0 X10 Y20 Z5\nG1 Z-1 F100\nG1 X45 Y25 Z-4\nG0 Z5\nM30\n")
-    monkeypatch.setattr(solids, "FACETS_MAX", 3)
+    monkeypatch.setattr(export, "FACETS_MAX", 3)
     names = [str(tmp_path / name) for name in ("part.step", "part.stl", "part.png")]
     assert main(["simulate", str(program), *WORDS, "--output", names[0], "--output", names[1], "--picture",
                  names[2]]) == 2

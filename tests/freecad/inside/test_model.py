@@ -77,7 +77,7 @@ class TestModel(unittest.TestCase):
     def test_facets_are_made_where_they_are_needed(self):
         """What is analytic has no second mesh, and what was not measured has no share."""
         counts, export = [], native.export
-        solids = importlib.import_module(native.load().__name__ + ".solids")
+        solids = importlib.import_module(native.load().__name__ + ".solids.export")
 
         def counted(*args, **words):
             counts.append(export(*args, **words))
@@ -145,7 +145,7 @@ class TestModel(unittest.TestCase):
     def test_slots_with_rounded_edges(self):
         """A tool with rounded corners: FreeCAD reads tori and the quarters of circles beside them as sound solids."""
         swarf = native.load()
-        brep, step = (importlib.import_module("%s.%s" % (swarf.__name__, name)) for name in ("brep", "step"))
+        brep, step = (importlib.import_module("%s.solids.%s" % (swarf.__name__, name)) for name in ("brep", "step"))
         cross = 6 * 4 - 2 * (1 - math.pi / 4)
         first = math.pi * 9 * 3 + math.pi * (4 + math.pi + 2 / 3)
         for places, removed in (((10, 10), (40, 10)), first + 30 * cross), (((10, 10), (40, 10), (40, 30)), None), \

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, field
 from typing import Optional
 
-from .shapes import Shape, Vector, add, cross, dot, unit
+from ..vectors import Vector, add, cross, dot, unit
+from .shapes import Shape
 
 
 @dataclass

@@ -15,16 +15,16 @@ import math
 from itertools import product
 from typing import Iterator, Optional, Sequence
 
+from .._native import Mesh, Surface
+from ..parts import pieces
+from ..progress import Report, check, share
+from ..vectors import Vector, add, cross, distance, dot, unit
+from ..wording import Said
 from . import chains, strips, truth, volume
-from ._native import Mesh, Surface
 from .chains import SLOPPY, Chain
-from .parts import pieces
-from .progress import Report, check, share
 from .regions import NEAR, NotAnalytic, Regions, find
-from .shapes import (CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, Vector, add, cross, distance, dot, meet,
-                     on, unit)
+from .shapes import CONE, CYLINDER, PLANE, SPHERE, TORUS, Equations, Shape, meet, on
 from .topology import Brep, Edge, Face
-from .wording import Said
 
 __all__ = ["Brep", "Edge", "Face", "NotAnalytic", "make"]
 

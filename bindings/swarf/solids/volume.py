@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 from typing import Callable, Iterator
 
-from .shapes import CONE, CYLINDER, PLANE, SPHERE, Vector, add, cross, dot, unit
+from ..vectors import Vector, add, cross, dot, unit
+from .shapes import CONE, CYLINDER, PLANE, SPHERE
 from .topology import Brep, Edge, Face
 
 #: Gauss' places and weights in 0 .. 1.

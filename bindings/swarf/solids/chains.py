@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Optional, Sequence
 
+from ..vectors import Vector, add, distance, dot
 from .regions import Regions
-from .shapes import Equations, Vector, add, distance, dot, meet, on, tangency
+from .shapes import Equations, meet, on, tangency
 
 #: mm; what shapes that should meet may miss each other by: the last digits of programs are twice that, and an edge is
 #: told to be as inexact as it is.

@@ -6,14 +6,15 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import Optional
 
+from .._native import Mesh, Stock, Surface
+from ..parts import largest, pieces_of
+from ..progress import Report, check, share
+from ..records import rows
+from ..vectors import add, cross, unit
+from ..wording import Said
 from . import brep, step
-from ._native import Mesh, Stock, Surface
 from .chains import SLOPPY
-from .parts import largest, pieces_of
-from .progress import Report, check, share
-from .records import rows
-from .shapes import PLANE, Shape, add, cross, unit
-from .wording import Said
+from .shapes import PLANE, Shape
 
 __all__ = ["SUFFIXES", "Cut", "Written", "as_cut", "facets", "write", "write_cut", "write_facets"]
 

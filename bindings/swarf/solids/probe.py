@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import Optional, Sequence
 
-from ._native import Mesh, Surface
-from .progress import Report
-from .records import rows
-from .shapes import Shape, Vector, add, cross, unit
+from .._native import Mesh, Surface
+from ..progress import Report
+from ..records import rows
+from ..vectors import Vector, add, cross, unit
+from .shapes import Shape
 
 #: In voxels: how far the surface may lie above or below a place.
 DEEP = 0.5

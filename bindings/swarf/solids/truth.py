@@ -6,11 +6,12 @@ from __future__ import annotations
 
 from typing import Optional
 
-from ._native import Surface
+from .._native import Surface
+from ..progress import Report, share, told
+from ..vectors import Vector, add, cross, distance, dot, middle, unit
 from .probe import DEEP, ask
-from .progress import Report, share, told
 from .regions import Regions
-from .shapes import PLANE, Shape, Vector, add, cross, distance, dot, middle, unit
+from .shapes import PLANE, Shape
 from .topology import Brep
 
 #: In voxels: how far beside an edge the surface is asked.

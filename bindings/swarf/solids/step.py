@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import Iterable
 
+from ..files import write_text
+from ..progress import Report, share, told
+from ..vectors import Vector, add, cross, distance, dot, unit
 from .brep import Brep, Edge, Face
-from .files import write_text
-from .progress import Report, share, told
-from .shapes import CONE, CYLINDER, PLANE, SPHERE, Vector, add, cross, distance, dot, unit
+from .shapes import CONE, CYLINDER, PLANE, SPHERE
 
 
 def _number(value: float) -> str:

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 from typing import Optional, Sequence
 
+from .._native import Surface
+from ..progress import Report, check, share, told
+from ..vectors import Vector, add, cross, distance, dot, unit
 from . import chains, opening
-from ._native import Surface
 from .chains import SLOPPY, Chain
 from .opening import Fan
 from .probe import ask
-from .progress import Report, check, share, told
 from .regions import Regions
-from .shapes import Equations, Shape, Vector, add, cross, distance, dot, meet, on, unit
+from .shapes import Equations, Shape, meet, on
 
 #: In voxels: how far to both sides the surface is asked, and how closely.
 REACH, STEP = 1.5, 0.06

@@ -8,11 +8,12 @@ import math
 from dataclasses import dataclass
 from typing import Optional
 
-from ._native import Mesh, Surface
-from .progress import TURNS, Report, check, share
-from .records import rows as rows_of
-from .shapes import Shape, Vector, add, cross, dot, middle
-from .wording import Said
+from .._native import Mesh, Surface
+from ..progress import TURNS, Report, check, share
+from ..records import rows as rows_of
+from ..vectors import Vector, add, cross, dot, middle
+from ..wording import Said
+from .shapes import Shape
 
 #: mm; shapes that differ by less are one: what the digits of a program leave open.
 SAME = 1e-4
