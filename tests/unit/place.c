@@ -221,6 +221,38 @@ static void note(off *found, const double p[3], double value, double truth, doub
     *most = fmax(*most, away);
 }
 
+/* Voxels of a cube, at their places before it was turned, that a distance is known for. */
+typedef struct near_voxels {
+    const swarf_box *cube;
+    double edge;
+    const swarf_placement *back;
+    distance_fn distance;
+    double *points, *truth; /* where they are now, and what their values should be */
+    size_t count;
+} near_voxels;
+
+enum { CUBE = 32 };
+
+/* All within a voxel of the surface, and others about them: part by part, as no distance changes faster than places. */
+static void find_near(near_voxels *v, const int at[3], int size)
+{
+    double middle[3], before[3];
+    for (int k = 0; k < 3; k++) middle[k] = v->cube->lo[k] + (at[k] + 0.5 * size) * v->edge;
+    swarf_placement_point(v->back, middle, before);
+    const double truth = v->distance(before);
+    if (fabs(truth) > (1 + 0.5 * sqrt(3) * (size - 1)) * v->edge) return;
+    if (size == 1) {
+        memcpy(v->points + 3 * v->count, middle, sizeof middle);
+        v->truth[v->count++] = truth;
+        return;
+    }
+    for (int i = 0; i < 8; i++) {
+        const int half = size / 2,
+                  part[3] = {at[0] + (i >> 2) * half, at[1] + (i >> 1 & 1) * half, at[2] + (i & 1) * half};
+        find_near(v, part, half);
+    }
+}
+
 /* Every voxel near the surface against the closed form. */
 static off compare_field(swarf_stock *placed, const swarf_placement *back, distance_fn distance)
 {
@@ -229,32 +261,24 @@ static off compare_field(swarf_stock *placed, const swarf_placement *back, dista
     size_t cubes = 0;
     CHECK_OK(swarf_stock_changed(placed, 0, NULL, 0, &cubes));
     swarf_box *boxes = malloc((cubes + 1) * sizeof *boxes);
-    double *points = malloc(3 * sizeof(double) * 32768);
-    float *values = malloc(sizeof(float) * 32768);
+    double *points = malloc(3 * sizeof(double) * CUBE * CUBE * CUBE),
+           *truth = malloc(sizeof(double) * CUBE * CUBE * CUBE);
+    float *values = malloc(sizeof(float) * CUBE * CUBE * CUBE);
     CHECK_OK(swarf_stock_changed(placed, 0, boxes, cubes, &cubes));
     for (size_t c = 0; c < cubes; c++) {
-        size_t count = 0;
-        double near = INFINITY;
-        for (int i = 0; i < 32768; i++) {
-            const int at[3] = {i >> 10, i >> 5 & 31, i & 31};
-            double p[3];
-            for (int k = 0; k < 3; k++) p[k] = boxes[c].lo[k] + (at[k] + 0.5) * edge;
-            memcpy(points + 3 * count++, p, sizeof p);
-            if (i == 0 || i == 32767 || i == 16912) {
-                swarf_placement_point(back, p, p);
-                near = fmin(near, fabs(distance(p)));
-            }
-        }
-        if (near > 40 * edge) continue;
-        CHECK_OK(swarf_stock_sample(placed, points, count, values));
-        for (size_t i = 0; i < count; i++) {
-            double p[3];
-            swarf_placement_point(back, points + 3 * i, p);
-            note(&found, p, (double)values[i], distance(p), edge);
+        near_voxels near = {&boxes[c], edge, back, distance, points, truth, 0};
+        find_near(&near, (int[3]){0}, CUBE);
+        if (near.count == 0) continue;
+        CHECK_OK(swarf_stock_sample(placed, points, near.count, values));
+        for (size_t i = 0; i < near.count; i++) {
+            double before[3];
+            swarf_placement_point(back, points + 3 * i, before);
+            note(&found, before, (double)values[i], truth[i], edge);
         }
     }
     free(boxes);
     free(points);
+    free(truth);
     free(values);
     CHECK(found.count > 1000);
     found.mean /= (double)found.count;
