@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* 3MF core specification 1.3 with colours of the materials extension 1.2.1: a ZIP archive of one model of one object,
- * in millimetres. Written as it goes, with no copy of the mesh in memory. */
+ * in millimetres. Written as it goes, with no copy of the mesh in memory, which lib3mf would take; that reads it in
+ * tests. */
 #include "base/parallel.h"
 #include "base/status.h"
 #include "mesh/colours.h"

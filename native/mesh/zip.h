@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* A ZIP archive written as it comes, one deflated entry after the other. */
+/* A ZIP archive written as it comes, one deflated entry after the other. By hand, over zlib: libarchive would bring
+ * libxml2 and others into FreeCAD's process, which may have loaded versions of its own. */
 #ifndef SWARF_MESH_ZIP_H
 #define SWARF_MESH_ZIP_H
 
