@@ -204,7 +204,7 @@ def check_measure(obj):
     wait_for(lambda: not opened.working, "the measures")
     table = opened.table
     assert opened.put.isEnabled() and [opened.shell.itemText(k) for k in (0, 1)] == ["Whole", "Piece 1"]
-    rows = [(table.item(k, 0).text().strip(), table.item(k, 1).text().strip() if table.item(k, 1) else None)
+    rows = [(table.item(k, 0).text().strip(), table.item(k, 1).text() if table.item(k, 1) else None)
             for k in range(table.rowCount())]
     assert rows[0] == ("Volume", "6800 mm³") and ("Holes through it", "0") in rows, rows
     assert rows[4:8] == [("Size, mm", None), ("X", "40.0000"), ("Y", "20.0000"), ("Z", "10.0000")], rows

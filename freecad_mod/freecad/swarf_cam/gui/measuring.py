@@ -92,7 +92,7 @@ class MeasurePanel(taskpanel.TaskPanel):
                 continue
             value = numbers.measure(values[place], unit)
             if not axis:
-                self._add_row(pieces.text_of(key), "%s %s" % (value, unit))
+                self._add_row(pieces.text_of(key), ("%s %s" % (value, unit)).strip())
                 continue
             if key != above:
                 self._add_row(pieces.text_of(key) + (", " + unit if unit else ""))
