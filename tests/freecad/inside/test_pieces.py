@@ -78,8 +78,10 @@ class TestPieces(unittest.TestCase):
                 ("centre", "Z", height), ("inertia", "XX", along_x), ("moment", "1", along_x), ("genus", "", 0)):
             for value in values_of(table, key, axis):
                 self.assertAlmostEqual(value, wanted, delta=1e-4 * max(abs(wanted), 1), msg=key)
-        self.assertAlmostEqual(abs(values_of(table, "axis", "1X")[0]), 1, places=6)
-        self.assertAlmostEqual(values_of(table, "inertia", "XY")[0], 0, delta=1e-2)
+        for place, axis in enumerate("XYZ", 1):
+            self.assertAlmostEqual(abs(values_of(table, "axis", "%d%s" % (place, axis))[0]), 1, places=9)
+        zeros = [("inertia", "XY"), ("inertia", "XZ"), ("inertia", "YZ"), ("axis", "1Y"), ("axis", "2X"), ("axis", "3Y")]
+        self.assertEqual([values_of(table, *row)[0] for row in zeros], [0.0] * len(zeros))
         wall, beside = values_of(table, "wall")
         self.assertAlmostEqual(wall, 7, delta=1e-3)
         self.assertIsNone(beside)

@@ -9,6 +9,9 @@ AXES = "XYZ"
 # A part of more pieces than this is chips; the largest are measured.
 MOST_SHELLS = 50
 
+# Of the greatest: less is what sums of many numbers leave of a zero.
+ROUNDING = 1e-9
+
 WHOLE, PIECE, HOLLOW = "whole", "piece", "hollow"
 
 
@@ -24,6 +27,15 @@ class Table:
 
 def _corner(shell, which, axis):
     return None if shell.bounding_box is None else shell.bounding_box[which][axis]
+
+
+def _inertia(shell, i, j):
+    greatest = max(abs(moment) for moment in shell.moments)
+    return shell.inertia[i][j] if abs(shell.inertia[i][j]) > ROUNDING * greatest else 0.0
+
+
+def _axis(shell, k, j):
+    return shell.axes[k][j] if abs(shell.axes[k][j]) > ROUNDING else 0.0
 
 
 def _size(shell, axis):
@@ -62,11 +74,11 @@ def table(whole, shells, thinnest):
     for k, axis in enumerate(AXES):
         add_of_whole("thinnest", axis, thinnest["place"] and thinnest["place"][k])
     for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
-        add("inertia", AXES[i] + AXES[j], "mm⁵", lambda shell: shell.inertia[i][j])
+        add("inertia", AXES[i] + AXES[j], "mm⁵", lambda shell: _inertia(shell, i, j))
     for k in range(3):
         add("moment", str(k + 1), "mm⁵", lambda shell: shell.moments[k])
     for k in range(3):
         for j, axis in enumerate(AXES):
-            add("axis", "%d%s" % (k + 1, axis), "", lambda shell: shell.axes[k][j])
+            add("axis", "%d%s" % (k + 1, axis), "", lambda shell: _axis(shell, k, j))
     add("triangles", "", "", lambda shell: shell.triangles)
     return Table(columns, rows, len(shells) - len(shown))

@@ -32,10 +32,12 @@ def count(value):
 
 
 def measure(value, unit):
-    """A measure: a length to a tenth of a micrometre, a number of things, or what has seven digits that count."""
+    """A measure: a number of things, a length to a tenth of a micrometre, a part of a direction, or what has seven
+    digits that count."""
     if isinstance(value, int):
         return count(value)
-    return text(value, 4) if unit == "mm" else _pointed("%.7g" % (value + 0.0))
+    decimals = {"mm": 4, "": 6}.get(unit)
+    return _pointed("%.7g" % value) if decimals is None else text(value, decimals)
 
 
 def deviation(value):

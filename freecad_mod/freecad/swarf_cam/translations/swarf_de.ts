@@ -412,7 +412,7 @@
         </message>
         <message>
             <source>Holes through it</source>
-            <translation>Löcher hindurch</translation>
+            <translation>Löcher</translation>
         </message>
         <message>
             <source>Hollow {0}</source>
