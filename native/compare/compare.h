@@ -3,6 +3,7 @@
 #ifndef SWARF_COMPARE_COMPARE_H
 #define SWARF_COMPARE_COMPARE_H
 
+#include "base/parallel.h"
 #include "stock/stock.h"
 #include "swarf/compare.h"
 
@@ -76,12 +77,18 @@ void swarf_measured_release(swarf_measured *measured);
 swarf_status swarf_sample_stock(const swarf_stock *stock, const swarf_progress *progress, double from, double to,
                                 swarf_points *out);
 void swarf_points_free(swarf_points *points);
-/** Points of the design, no more than `spacing` apart, that lie deeper in the stock, or farther out of it, than `least`
- *  mm; *area is that of all points tried. Values are positive in the stock and end at its band. `marks` (may be NULL;
- *  else spacing is at most a voxel) has a byte per slot: gets what the design is there. The stock has been entered. */
-swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double least,
-                                 uint8_t *marks, const swarf_progress *progress, double from, double to,
-                                 swarf_samples *out, double *area);
+/** How a design is sampled. */
+typedef struct swarf_sampling {
+    double spacing; /**< mm; points are no farther apart */
+    double least;   /**< mm; those deeper in the stock, or farther out of it, are told */
+    uint8_t
+        *marks; /**< a byte per slot gets what the design is there; NULL: not wanted, else spacing is a voxel at most */
+} swarf_sampling;
+
+/** Points of the design that differ from the stock; *area is that of all points tried. Values are positive in the stock
+ *  and end at its band. The stock has been entered. */
+swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, const swarf_sampling *sampling,
+                                 const swarf_progress_share *share, swarf_samples *out, double *area);
 
 /** Marks of slots: a surface is in it; one that the other does not run beside. */
 enum { SLOT_MET = 1, SLOT_OPEN = 2 };

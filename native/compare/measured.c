@@ -93,9 +93,10 @@ static swarf_status measure(swarf_measured *m, const swarf_stock *stock, const s
     const int matches = !design->open && !(spacing > voxel) && swarf_layout_holds(&m->layout, &design->facts.box);
     swarf_status status = SWARF_OK;
     if (!m->slots || !marks) status = swarf_fail(SWARF_ERROR_MEMORY, "deviation: out of memory");
+    const swarf_sampling sampling = {spacing, voxel, matches ? marks : NULL};
+    const swarf_progress_share share = {progress, 0.5, 0.6};
     if (status == SWARF_OK)
-        status = swarf_sample_design(stock, design, spacing, voxel, matches ? marks : NULL, progress, 0.5, 0.6,
-                                     &m->on_design, &m->design_mm2);
+        status = swarf_sample_design(stock, design, &sampling, &share, &m->on_design, &m->design_mm2);
     if (status == SWARF_OK && matches) status = swarf_match_slots(stock, design, m, marks);
     if (status == SWARF_OK)
         status = swarf_compare_slots(stock, design, matches ? marks : NULL, progress, 0.6, 1, m->slots, &m->volumes);

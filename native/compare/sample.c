@@ -36,8 +36,7 @@ struct work {
     size_t leaf_count;
     swarf_samples *parts; /* one per piece of work */
     const swarf_solid *design;
-    double spacing, least;
-    uint8_t *marks;
+    swarf_sampling sampling;
     swarf_points *points; /* where the parts go; first counts within a part until they are there */
     size_t *starts;       /* of each part in them */
     double *area;         /* per piece */
@@ -289,12 +288,12 @@ static swarf_status try_point(struct finder *f, size_t place, const double point
         within &= at[k] >= -1 && at[k] < (double)work->layout->count[k] * SWARF_NODE_DIM;
     }
     if (within) value = (double)swarf_probe_slope(&f->probe, at, slope);
-    if (work->marks) {
-        const int is_beside = fabs(value) <= work->least && vector_dot(slope, normal) >= least_slope;
+    if (work->sampling.marks) {
+        const int is_beside = fabs(value) <= work->sampling.least && vector_dot(slope, normal) >= least_slope;
         const int has_side = work->design->state[place] != SOLID_SLIVER;
-        swarf_mark_slots(work->layout, at, is_beside && has_side ? SLOT_MET : SLOT_OPEN, work->marks);
+        swarf_mark_slots(work->layout, at, is_beside && has_side ? SLOT_MET : SLOT_OPEN, work->sampling.marks);
     }
-    if (fabs(value) <= work->least || area == 0) return SWARF_OK;
+    if (fabs(value) <= work->sampling.least || area == 0) return SWARF_OK;
     swarf_sample sample = {
         .value = (float)-value, .area = (float)area, .triangle = work->design->source[place], .missing = 1};
     for (int k = 0; k < 3; k++) sample.xyz[k] = (float)point[k];
@@ -307,7 +306,7 @@ static swarf_status mark_edge(struct finder *f, size_t place, const float from[3
 {
     double square = 0, point[3];
     for (int k = 0; k < 3; k++) square += ((double)to[k] - from[k]) * ((double)to[k] - from[k]);
-    const size_t steps = (size_t)ceil(sqrt(square) / f->work->spacing);
+    const size_t steps = (size_t)ceil(sqrt(square) / f->work->sampling.spacing);
     for (size_t i = 0; i <= steps; i++) {
         const double along = steps ? (double)i / (double)steps : 0;
         for (int k = 0; k < 3; k++) point[k] = (1 - along) * from[k] + along * to[k];
@@ -339,17 +338,17 @@ static swarf_status sample_triangle(struct finder *f, size_t place, double *area
     if (!(own > 0)) return SWARF_OK;
     *area += own;
     for (int k = 0; k < 3; k++) normal[k] /= 2 * own;
-    const size_t rows = (size_t)ceil(2 * own / edge[base] / work->spacing);
+    const size_t rows = (size_t)ceil(2 * own / edge[base] / work->sampling.spacing);
     const float *a = t->xyz[base], *b = t->xyz[(base + 1) % 3], *top = t->xyz[(base + 2) % 3];
     double foot = 0; /* of the top on the longest edge, from its start */
     for (int k = 0; k < 3; k++) foot += ((double)top[k] - a[k]) * ((double)b[k] - a[k]) / edge[base];
-    if (work->marks && fmax(foot, edge[base] - foot) > (double)rows * work->spacing) {
+    if (work->sampling.marks && fmax(foot, edge[base] - foot) > (double)rows * work->sampling.spacing) {
         SWARF_TRY(mark_edge(f, place, a, top, normal));
         SWARF_TRY(mark_edge(f, place, b, top, normal));
     }
     for (size_t row = 0; row < rows; row++) {
         const double up = ((double)row + 0.5) / (double)rows;
-        const size_t columns = (size_t)ceil(edge[base] * (1 - up) / work->spacing);
+        const size_t columns = (size_t)ceil(edge[base] * (1 - up) / work->sampling.spacing);
         for (size_t column = 0; column < columns; column++) {
             const double along = ((double)column + 0.5) / (double)columns;
             double point[3];
@@ -371,22 +370,18 @@ static swarf_status sample_triangles(void *context, size_t index)
     return SWARF_OK;
 }
 
-swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, double spacing, double least,
-                                 uint8_t *marks, const swarf_progress *progress, double from, double to,
-                                 swarf_samples *out, double *area)
+swarf_status swarf_sample_design(const swarf_stock *stock, const swarf_solid *design, const swarf_sampling *sampling,
+                                 const swarf_progress_share *share, swarf_samples *out, double *area)
 {
     const size_t pieces = (design->tree.count + TRIANGLES - 1) / TRIANGLES;
-    struct work work = {.stock = stock,
-                        .layout = swarf_tree_get_layout(stock->tree),
-                        .design = design,
-                        .spacing = spacing,
-                        .least = least,
-                        .marks = marks};
+    struct work work = {
+        .stock = stock, .layout = swarf_tree_get_layout(stock->tree), .design = design, .sampling = *sampling};
     work.parts = calloc(pieces + 1, sizeof *work.parts);
     work.area = calloc(pieces + 1, sizeof *work.area);
     swarf_status status = SWARF_OK;
     if (!work.parts || !work.area) status = swarf_fail(SWARF_ERROR_MEMORY, "compare: out of memory");
-    if (status == SWARF_OK) status = swarf_parallel_for(pieces, sample_triangles, &work, progress, from, to);
+    if (status == SWARF_OK)
+        status = swarf_parallel_for(pieces, sample_triangles, &work, share->whole, share->from, share->to);
     double total = 0;
     for (size_t i = 0; i < pieces && status == SWARF_OK; i++) total += work.area[i];
     if (status == SWARF_OK) status = swarf_samples_join(work.parts, pieces, out);

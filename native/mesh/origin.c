@@ -36,8 +36,8 @@ swarf_status swarf_mesh_origins(const swarf_mesh *mesh, const swarf_surface *sur
            *directions = points ? points + 3 * t.triangle_count : NULL;
     if (!points) return swarf_fail(SWARF_ERROR_MEMORY, "mesh: out of memory for %zu triangles", t.triangle_count);
     for (size_t i = 0; i < t.triangle_count; i++) describe(&t, i, points + 3 * i, directions + 3 * i);
-    const swarf_status status = swarf_surface_find(surface, moves, points, directions, t.triangle_count,
-                                                   reach_mm == 0 ? surface->voxel : reach_mm, progress, out);
+    const swarf_surface_lines lines = {points, directions, t.triangle_count, reach_mm == 0 ? surface->voxel : reach_mm};
+    const swarf_status status = swarf_surface_find(surface, moves, &lines, progress, out);
     free(points);
     return status;
 }

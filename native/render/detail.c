@@ -92,8 +92,8 @@ static swarf_status look(adding *a, const swarf_progress *progress, double from,
     const double middle = is_exact ? from + traced * (to - from) : to;
     SWARF_TRY(swarf_parallel_for((a->count + PIECE - 1) / PIECE, sample_some, a, progress, from, middle));
     if (!is_exact) return SWARF_OK;
-    return swarf_look_refine(&c->look, a->sight, a->count * each, close_enough, place_of_sample, a, progress, middle,
-                             to);
+    const swarf_sights sights = {a->sight, a->count * each, close_enough, place_of_sample, a};
+    return swarf_look_refine(&c->look, &sights, progress, middle, to);
 }
 
 /** Begin with these squares and `side` sights along an edge of each. */

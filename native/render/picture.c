@@ -161,8 +161,8 @@ static swarf_status find_middles(swarf_canvas *c, const swarf_progress *progress
     const size_t count = (size_t)tiles(c->width) * (size_t)tiles(c->height);
     SWARF_TRY(swarf_parallel_for(count, look_tile, c, progress, 0, c->middle ? looked : 1));
     if (!c->middle || !c->options->exact) return SWARF_OK;
-    return swarf_look_refine(&c->look, c->middle, (size_t)c->width * (size_t)c->height, 0, place_of_middle, c, progress,
-                             looked, refined);
+    const swarf_sights sights = {c->middle, (size_t)c->width * (size_t)c->height, 0, place_of_middle, c};
+    return swarf_look_refine(&c->look, &sights, progress, looked, refined);
 }
 
 /** Light, shades and lines, of which a part `lit` is light. */
@@ -413,7 +413,8 @@ swarf_status swarf_scene_pick(swarf_scene *scene, const swarf_camera *camera, co
     swarf_status status = swarf_look_begin(scene, camera, options, options->height, &look);
     if (status == SWARF_OK) {
         swarf_look_through(&look, &places, 1, &seen);
-        if (options->exact) status = swarf_look_refine(&look, &sight, 1, 0, place_of_pick, place, NULL, 0, 1);
+        if (options->exact)
+            status = swarf_look_refine(&look, &(swarf_sights){&sight, 1, 0, place_of_pick, place}, NULL, 0, 1);
     }
     swarf_look_end(&look);
     swarf_scene_leave(scene);

@@ -22,9 +22,7 @@ enum { PIECE = 1 << 10 };
 
 typedef struct batch {
     const swarf_look *look;
-    swarf_sight *sights;
-    swarf_place_fn place;
-    const void *context;
+    const swarf_sights *sights;
     double *point, *direction, *normal; /* 3 each */
     double *found;                      /* 3 each */
     int64_t *move;
@@ -39,9 +37,9 @@ static swarf_status take_some(void *context, size_t piece)
 {
     const batch *b = context;
     for (size_t i = piece * PIECE; i < (piece + 1) * PIECE && i < b->count; i++) {
-        const swarf_sight *sight = &b->sights[b->sight[i]];
+        const swarf_sight *sight = &b->sights->sight[b->sight[i]];
         double at[2], origin[3], direction[3];
-        (void)b->place(b->context, b->sight[i], at);
+        (void)b->sights->place(b->sights->context, b->sight[i], at);
         swarf_look_ray(b->look, at, origin, direction);
         for (size_t axis = 0; axis < 3; axis++) {
             b->direction[3 * i + axis] = direction[axis];
@@ -56,7 +54,7 @@ static swarf_status give_some(void *context, size_t piece)
 {
     const batch *b = context;
     for (size_t i = piece * PIECE; i < (piece + 1) * PIECE && i < b->count; i++) {
-        swarf_sight *sight = &b->sights[b->sight[i]];
+        swarf_sight *sight = &b->sights->sight[b->sight[i]];
         double way = 0;
         if (b->move[i] == -2) continue;
         for (size_t axis = 0; axis < 3; axis++) {
@@ -77,10 +75,11 @@ static swarf_status find(batch *b, int moved, const swarf_progress *progress)
     double part;
     const size_t moves = swarf_scene_moves(b->look->scene, &part);
     const swarf_surface *surface = swarf_scene_surface(b->look->scene);
-    const double reach = reach_voxels * swarf_scene_voxel(b->look->scene);
+    const swarf_surface_lines lines = {b->point, b->direction, b->count,
+                                       reach_voxels * swarf_scene_voxel(b->look->scene)};
+    const swarf_surface_feet feet = {b->found, b->normal, b->move};
     b->moved = moved;
-    SWARF_TRY(swarf_surface_refine_to(surface, moves, part, b->point, b->direction, b->count, reach, b->tolerance,
-                                      progress, b->found, b->normal, b->move));
+    SWARF_TRY(swarf_surface_refine_to(surface, moves, part, &lines, b->tolerance, progress, &feet));
     return swarf_parallel_for((b->count + PIECE - 1) / PIECE, give_some, b, NULL, 0, 1);
 }
 
@@ -93,7 +92,7 @@ static swarf_status refine(batch *b, const swarf_progress *progress)
         if (b->move[i] != -2) continue;
         for (size_t axis = 0; axis < 3; axis++) {
             b->point[3 * left + axis] = b->point[3 * i + axis];
-            b->direction[3 * left + axis] = b->sights[b->sight[i]].normal[axis];
+            b->direction[3 * left + axis] = b->sights->sight[b->sight[i]].normal[axis];
         }
         b->sight[left++] = b->sight[i];
     }
@@ -111,18 +110,16 @@ static double least_footprint(const swarf_look *look)
     return look->pixel * fmax(sqrt(square) - 0.5 * look->size, 0);
 }
 
-swarf_status swarf_look_refine(const swarf_look *look, swarf_sight *sights, size_t count, double close_enough,
-                               swarf_place_fn place, const void *context, const swarf_progress *progress, double from,
-                               double to)
+swarf_status swarf_look_refine(const swarf_look *look, const swarf_sights *sights, const swarf_progress *progress,
+                               double from, double to)
 {
+    const size_t count = sights->count;
     if (!swarf_scene_surface(look->scene) || count == 0) return SWARF_OK;
     const size_t room = count < BATCH ? count : BATCH;
     double *const numbers = malloc(room * 12 * sizeof *numbers);
     batch b = {.look = look,
-               .tolerance = close_enough * least_footprint(look),
+               .tolerance = sights->close_enough * least_footprint(look),
                .sights = sights,
-               .place = place,
-               .context = context,
                .move = malloc(room * sizeof *b.move),
                .sight = malloc(room * sizeof *b.sight)};
     swarf_status status =
@@ -134,7 +131,8 @@ swarf_status swarf_look_refine(const swarf_look *look, swarf_sight *sights, size
     for (size_t index = 0; status == SWARF_OK && index < count;) {
         swarf_progress_share share = {progress, from + (to - from) * (double)index / (double)count, to};
         for (b.count = 0; index < count && b.count < room; index++)
-            if (sights[index].seen == SWARF_SEEN_STOCK && place(context, index, NULL)) b.sight[b.count++] = index;
+            if (sights->sight[index].seen == SWARF_SEEN_STOCK && sights->place(sights->context, index, NULL))
+                b.sight[b.count++] = index;
         share.to = from + (to - from) * (double)index / (double)count;
         const swarf_progress part = swarf_progress_part(&share);
         if (b.count) status = refine(&b, progress ? &part : NULL);

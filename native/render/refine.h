@@ -9,11 +9,18 @@
  *  exact surface already. Many threads at once. */
 typedef int (*swarf_place_fn)(const void *context, size_t index, double place[2]);
 
-/** Move those of `count` sights that see the stock along their rays onto the scene's exact surface, where it has one;
- *  nothing without. What is closer to it than this part of a grid square is close enough; 0: exactly. All cores; not
- *  from within a piece of parallel work. */
-swarf_status swarf_look_refine(const swarf_look *look, swarf_sight *sights, size_t count, double close_enough,
-                               swarf_place_fn place, const void *context, const swarf_progress *progress, double from,
-                               double to);
+/** Sights to be moved. */
+typedef struct swarf_sights {
+    swarf_sight *sight;
+    size_t count;
+    double close_enough;  /**< a part of a grid square: what is closer to the surface stays; 0: exactly there */
+    swarf_place_fn place; /**< of each */
+    const void *context;  /**< for place() */
+} swarf_sights;
+
+/** Move those of the sights that see the stock along their rays onto the scene's exact surface, where it has one;
+ *  nothing without. All cores; not from within a piece of parallel work. */
+swarf_status swarf_look_refine(const swarf_look *look, const swarf_sights *sights, const swarf_progress *progress,
+                               double from, double to);
 
 #endif

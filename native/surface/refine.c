@@ -28,12 +28,11 @@ struct refining {
     const swarf_surface *surface;
     size_t moves;
     double part; /* of the next move */
-    const double *points, *directions;
-    double reach, tolerance, *points_out, *normals_out;
-    int64_t *moves_out;
-    swarf_surface_point *found_out; /* instead of all these */
+    swarf_surface_lines lines;
+    double tolerance;
+    swarf_surface_feet feet;
+    swarf_surface_point *found_out; /* instead of feet */
     double edge;
-    size_t count;
     struct place *places;
     const size_t *runs; /* where the places of each cell start */
     swarf_surface_near **near;
@@ -50,7 +49,7 @@ static void along(const double p[3], const double d[3], double s, double out[3])
 static int find_zero(const struct refining *work, const swarf_surface_near *near, const double p[3], const double d[3],
                      double *s, swarf_surface_point *found)
 {
-    const double reach = work->reach;
+    const double reach = work->lines.reach_mm;
     double q[3];
     *s = 0;
     for (int step = 0; step < 8; step++) {
@@ -85,8 +84,8 @@ static int find_zero(const struct refining *work, const swarf_surface_near *near
 static void refine_point(const struct refining *work, const swarf_surface_near *near, size_t i)
 {
     double p[3], d[3], s;
-    memcpy(p, work->points + 3 * i, sizeof p);
-    const double *given = work->directions + 3 * i;
+    memcpy(p, work->lines.points + 3 * i, sizeof p);
+    const double *given = work->lines.directions + 3 * i;
     const double length = sqrt(given[0] * given[0] + given[1] * given[1] + given[2] * given[2]);
     for (int k = 0; k < 3; k++) d[k] = given[k] / length;
     swarf_surface_point found;
@@ -96,9 +95,10 @@ static void refine_point(const struct refining *work, const swarf_surface_near *
         work->found_out[i] = found;
         return;
     }
-    along(p, d, ok ? s : 0, work->points_out + 3 * i);
-    for (int k = 0; k < 3 && work->normals_out; k++) work->normals_out[3 * i + (size_t)k] = ok ? found.normal[k] : d[k];
-    if (work->moves_out) work->moves_out[i] = ok ? found.move : -2;
+    along(p, d, ok ? s : 0, work->feet.points + 3 * i);
+    for (int k = 0; k < 3 && work->feet.normals; k++)
+        work->feet.normals[3 * i + (size_t)k] = ok ? found.normal[k] : d[k];
+    if (work->feet.moves) work->feet.moves[i] = ok ? found.move : -2;
 }
 
 static swarf_status refine_cell_with(const struct refining *work, swarf_surface_near *near, size_t run)
@@ -109,9 +109,9 @@ static swarf_status refine_cell_with(const struct refining *work, swarf_surface_
         box.lo[k] = INFINITY;
         box.hi[k] = -INFINITY;
         for (size_t i = 0; i < work->runs[run + 1] - work->runs[run]; i++) {
-            const double at = work->points[3 * (size_t)first[i].point + (size_t)k];
-            box.lo[k] = fmin(box.lo[k], at - work->reach);
-            box.hi[k] = fmax(box.hi[k], at + work->reach);
+            const double at = work->lines.points[3 * (size_t)first[i].point + (size_t)k];
+            box.lo[k] = fmin(box.lo[k], at - work->lines.reach_mm);
+            box.hi[k] = fmax(box.hi[k], at + work->lines.reach_mm);
         }
     }
     SWARF_TRY(swarf_surface_gather_part(near, work->moves, work->part, &box));
@@ -188,7 +188,7 @@ static struct place *sort_places(struct place *places, struct place *spare, size
 
 static swarf_status check_point(const struct refining *work, size_t i)
 {
-    const double *p = work->points + 3 * i, *d = work->directions + 3 * i;
+    const double *p = work->lines.points + 3 * i, *d = work->lines.directions + 3 * i;
     for (int k = 0; k < 3; k++)
         SWARF_REQUIRE(isfinite(p[k]) && isfinite(d[k]),
                       "surface: coordinate %c of point or direction %zu is not finite", "xyz"[k], i);
@@ -199,9 +199,9 @@ static swarf_status check_point(const struct refining *work, size_t i)
 static swarf_status place_some(void *context, size_t piece)
 {
     const struct refining *work = context;
-    for (size_t i = piece * PIECE; i < (piece + 1) * PIECE && i < work->count; i++) {
+    for (size_t i = piece * PIECE; i < (piece + 1) * PIECE && i < work->lines.count; i++) {
         SWARF_TRY(check_point(work, i));
-        work->places[i] = (struct place){.cell = cell_of(work->points + 3 * i, work->edge), .point = (uint32_t)i};
+        work->places[i] = (struct place){.cell = cell_of(work->lines.points + 3 * i, work->edge), .point = (uint32_t)i};
     }
     return SWARF_OK;
 }
@@ -209,7 +209,7 @@ static swarf_status place_some(void *context, size_t piece)
 static swarf_status refine_sorted(struct refining *work, struct place *places, struct place *spare, size_t *runs,
                                   const swarf_progress *progress)
 {
-    const size_t count = work->count;
+    const size_t count = work->lines.count;
     work->places = places;
     SWARF_TRY(swarf_parallel_for((count + PIECE - 1) / PIECE, place_some, work, NULL, 0, 1));
     places = sort_places(places, spare, count);
@@ -230,13 +230,13 @@ static swarf_status refine_sorted(struct refining *work, struct place *places, s
     return status;
 }
 
-static swarf_status refine(struct refining *work, size_t count, const swarf_progress *progress)
+static swarf_status refine(struct refining *work, const swarf_progress *progress)
 {
-    SWARF_REQUIRE(isfinite(work->reach) && work->reach > 0, "surface: reach %g mm is not a positive number",
-                  work->reach);
+    const size_t count = work->lines.count;
+    SWARF_REQUIRE(isfinite(work->lines.reach_mm) && work->lines.reach_mm > 0,
+                  "surface: reach %g mm is not a positive number", work->lines.reach_mm);
     SWARF_REQUIRE(count < UINT32_MAX, "surface: %zu points at once are too many", count);
     work->edge = cell_voxels * work->surface->voxel;
-    work->count = count;
     struct place *places = malloc(2 * (count + 1) * sizeof *places);
     size_t *runs = malloc((count + 1) * sizeof *runs);
     const swarf_status status = places && runs ? refine_sorted(work, places, places + count, runs, progress)
@@ -246,44 +246,31 @@ static swarf_status refine(struct refining *work, size_t count, const swarf_prog
     return status;
 }
 
-swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves, double part, const double *points,
-                                     const double *directions, size_t count, double reach_mm, double tolerance_mm,
-                                     const swarf_progress *progress, double *points_out, double *normals_out,
-                                     int64_t *moves_out)
+static int are_there(const swarf_surface *surface, const swarf_surface_lines *lines, const void *out)
 {
-    SWARF_REQUIRE(surface && (count == 0 || (points && directions && points_out)), "surface: NULL");
-    struct refining work = {.surface = surface,
-                            .moves = moves,
-                            .part = part,
-                            .points = points,
-                            .directions = directions,
-                            .reach = reach_mm,
-                            .tolerance = tolerance_mm,
-                            .points_out = points_out,
-                            .normals_out = normals_out,
-                            .moves_out = moves_out};
-    return refine(&work, count, progress);
+    return surface && lines && (lines->count == 0 || (lines->points && lines->directions && out));
 }
 
-swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, const double *points,
-                                  const double *directions, size_t count, double reach_mm,
-                                  const swarf_progress *progress, double *points_out, double *normals_out,
-                                  int64_t *moves_out)
+swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves, double part,
+                                     const swarf_surface_lines *lines, double tolerance_mm,
+                                     const swarf_progress *progress, const swarf_surface_feet *out)
 {
-    return swarf_surface_refine_to(surface, moves, 0, points, directions, count, reach_mm, 0, progress, points_out,
-                                   normals_out, moves_out);
+    SWARF_REQUIRE(out && are_there(surface, lines, out->points), "surface: NULL");
+    struct refining work = {
+        .surface = surface, .moves = moves, .part = part, .lines = *lines, .tolerance = tolerance_mm, .feet = *out};
+    return refine(&work, progress);
 }
 
-swarf_status swarf_surface_find(const swarf_surface *surface, size_t moves, const double *points,
-                                const double *directions, size_t count, double reach_mm, const swarf_progress *progress,
-                                swarf_surface_point *out)
+swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, const swarf_surface_lines *lines,
+                                  const swarf_progress *progress, const swarf_surface_feet *out)
 {
-    SWARF_REQUIRE(surface && (count == 0 || (points && directions && out)), "surface: NULL");
-    struct refining work = {.surface = surface,
-                            .moves = moves,
-                            .points = points,
-                            .directions = directions,
-                            .reach = reach_mm,
-                            .found_out = out};
-    return refine(&work, count, progress);
+    return swarf_surface_refine_to(surface, moves, 0, lines, 0, progress, out);
+}
+
+swarf_status swarf_surface_find(const swarf_surface *surface, size_t moves, const swarf_surface_lines *lines,
+                                const swarf_progress *progress, swarf_surface_point *out)
+{
+    SWARF_REQUIRE(are_there(surface, lines, out), "surface: NULL");
+    struct refining work = {.surface = surface, .moves = moves, .lines = *lines, .found_out = out};
+    return refine(&work, progress);
 }

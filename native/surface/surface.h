@@ -44,10 +44,9 @@ struct swarf_surface {
 /** The same as swarf_surface_refine(), but of a `part` (0 .. 1) of the next move as well, and what comes closer to a
  *  zero than `tolerance_mm` takes its normal and its move from there and goes straight on to where that face would be:
  *  what it costs to look once more is saved. */
-swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves, double part, const double *points,
-                                     const double *directions, size_t count, double reach_mm, double tolerance_mm,
-                                     const swarf_progress *progress, double *points_out, double *normals_out,
-                                     int64_t *moves_out);
+swarf_status swarf_surface_refine_to(const swarf_surface *surface, size_t moves, double part,
+                                     const swarf_surface_lines *lines, double tolerance_mm,
+                                     const swarf_progress *progress, const swarf_surface_feet *out);
 
 /** The same as swarf_surface_gather(), and a `part` (0 .. 1) of the next move's path as well; `t` of points is along
  *  that part. */

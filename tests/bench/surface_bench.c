@@ -82,8 +82,8 @@ int main(int count, char **argument)
     swarf_stock *stock = bench_setup_end(&setup);
     vertices v = take_vertices(stock, count > 4 ? (size_t)atol(argument[4]) : SIZE_MAX);
     const double t_refine = bench_now();
-    bench_must(
-        swarf_surface_refine(surface, setup.moves, v.xyz, v.normal, v.count, voxel, NULL, v.out, v.normal, v.move));
+    bench_must(swarf_surface_refine(surface, setup.moves, &(swarf_surface_lines){v.xyz, v.normal, v.count, voxel}, NULL,
+                                    &(swarf_surface_feet){v.out, v.normal, v.move}));
     const double refine_s = bench_now() - t_refine;
     printf("{\"program\": \"%s\", \"resolution\": %s, \"threads\": %d, \"moves\": %zu, \"points\": %zu, "
            "\"build_s\": %.4f, \"refine_s\": %.4f, ",

@@ -97,7 +97,8 @@ static int find_points(const swarf_surface *surface, const swarf_mesh *mesh, tes
             along[i][k] = test_random_in(random, -1, 1);
         }
     }
-    CHECK_OK(swarf_surface_refine(surface, SIZE_MAX, from[0], along[0], POINTS, 1, NULL, from[0], NULL, moves));
+    const swarf_surface_lines lines = {from[0], along[0], POINTS, 1};
+    CHECK_OK(swarf_surface_refine(surface, SIZE_MAX, &lines, NULL, &(swarf_surface_feet){from[0], NULL, moves}));
     for (int i = 0; i < POINTS; i++)
         if (moves[i] != -2) memcpy(points[count++], from[i], sizeof *points);
     return count;

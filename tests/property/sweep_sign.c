@@ -37,14 +37,23 @@ static int only_cutter = -1, only_motion = -1;
 static atomic_int next_case;
 static result results[CASE_CUTTERS * CASE_MOTIONS];
 
-static void note(result *r, int most, const char *what, double value, double wanted, const char *cutter,
-                 const swarf_path *path, double voxel, const double point[3])
+/* What is swept. */
+typedef struct sweeping {
+    const swarf_cutter *cutter;
+    const char *name;
+    const oracle_body *body;
+    const swarf_path *path;
+    double voxel;
+} sweeping;
+
+static void note(result *r, int most, const char *what, double value, double wanted, const sweeping *s,
+                 const double point[3])
 {
     if (r->texts >= most) return;
     char *text = r->text[r->texts++];
     FILE *stream = fmemopen(text, sizeof r->text[0], "w");
     fprintf(stream, "%s: got %.9g, oracle %.9g mm: ", what, value, wanted);
-    oracle_print(stream, cutter, path, voxel, point);
+    oracle_print(stream, s->name, s->path, s->voxel, point);
     fclose(stream);
 }
 
@@ -62,10 +71,11 @@ static int is_hollow(const swarf_cutter *cutter)
  * crossing is checked. `bound` is in voxels. Where two positions of the tool that are both nearest lie far apart within
  * the edge (a ridge close under the surface), a field of samples has a bend that no crossing can see: a place counts
  * when the exact distances themselves cross near the surface. */
-static void check_crossing(const swarf_cutter *cutter, const char *name, const oracle_body *body,
-                           const swarf_path *path, double voxel, double bound, test_random *random,
-                           const double point[3], result *r)
+static void check_crossing(const sweeping *s, double bound, test_random *random, const double point[3], result *r)
 {
+    const oracle_body *body = s->body;
+    const swarf_path *path = s->path;
+    const double voxel = s->voxel;
     const int axis = (int)test_random_below(random, 3);
     const double phase = test_random_in(random, 0, 1);
     double ends[2][3], at[3];
@@ -75,7 +85,7 @@ static void check_crossing(const swarf_cutter *cutter, const char *name, const o
     memcpy(at, point, sizeof at);
     ends[0][axis] -= phase * voxel;
     ends[1][axis] += (1 - phase) * voxel;
-    if (swarf_sweep_distance(cutter, SWARF_PART_FLUTES, path, voxel, ends[0], 2, value) != SWARF_OK) {
+    if (swarf_sweep_distance(s->cutter, SWARF_PART_FLUTES, path, voxel, ends[0], 2, value) != SWARF_OK) {
         r->error = "swarf_sweep_distance failed";
         return;
     }
@@ -96,7 +106,7 @@ static void check_crossing(const swarf_cutter *cutter, const char *name, const o
     r->worst_crossing = fmax(r->worst_crossing, fabs(off) / voxel);
     if (fabs(off) <= bound * voxel) return;
     r->off++;
-    note(r, 2 * PRINTED, "crossing off", 0, off, name, path, voxel, at);
+    note(r, 2 * PRINTED, "crossing off", 0, off, s, at);
 }
 
 static void run_case(int number, result *r)
@@ -114,6 +124,7 @@ static void run_case(int number, result *r)
     for (size_t chunk = 0; chunk * CHUNK < points_per_case; chunk++) {
         const swarf_path path = case_motion(number % CASE_MOTIONS, &random, &motion_name, &curved);
         const double voxel = voxels[chunk % 3];
+        const sweeping swept = {cutter, cutter_name, &body, &path, voxel};
         const double bound = (curved || hollow ? SWARF_SWEEP_BOUND : exact_bound) * voxel;
         for (int i = 0; i < CHUNK; i++) oracle_random_point(&body, &path, 3 * voxel, &random, point[i]);
         if (swarf_sweep_distance(cutter, SWARF_PART_FLUTES, &path, voxel, point[0], CHUNK, value) != SWARF_OK) {
@@ -128,12 +139,11 @@ static void run_case(int number, result *r)
             const double wanted = oracle_distance(&body, &path, point[i]);
             if (fabs(wanted) / voxel > r->worst_sign || isnan(value[i])) r->worst_sign = fabs(wanted) / voxel;
             r->wrong++;
-            note(r, PRINTED, "wrong sign", (double)value[i], wanted, cutter_name, &path, voxel, point[i]);
+            note(r, PRINTED, "wrong sign", (double)value[i], wanted, &swept, point[i]);
         }
         for (int i = 0; i < CHUNK && r->crossings < each * (long)(chunk + 1) && r->crossings < MOST_CROSSINGS; i++)
-            check_crossing(cutter, cutter_name, &body, &path, voxel,
-                           curved || hollow ? crossing_bound + SWARF_SWEEP_BOUND : crossing_bound, &random, point[i],
-                           r);
+            check_crossing(&swept, curved || hollow ? crossing_bound + SWARF_SWEEP_BOUND : crossing_bound, &random,
+                           point[i], r);
     }
     swarf_cutter_release(cutter);
 }

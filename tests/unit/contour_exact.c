@@ -237,8 +237,8 @@ static void measure_told(const part *truth, const swarf_surface *surface, const 
         count++;
     }
     if (count == 0) return;
-    CHECK_OK(swarf_surface_refine(surface, SIZE_MAX, point[0], towards[0], (size_t)count, 0.1 * voxel, NULL, point[0],
-                                  told[0], move));
+    const swarf_surface_lines lines = {point[0], towards[0], (size_t)count, 0.1 * voxel};
+    CHECK_OK(swarf_surface_refine(surface, SIZE_MAX, &lines, NULL, &(swarf_surface_feet){point[0], told[0], move}));
     for (int i = 0; i < count; i++) {
         double normal[3];
         CHECK(move[i] != -2);

@@ -177,9 +177,11 @@ static void check_refine(void)
     double points[4][3] = {{1, 0.3, -1.1}, {1, 2.1, -0.5}, {1, 5, 0.07}, {1, 1, -5}}, normals[4][3], out[4][3];
     double directions[4][3] = {{0, 0, -2}, {0, -1, 0.1}, {0, 0, 1}, {0, 0, 1}};
     int64_t moves[4];
+    const swarf_surface_lines lines = {points[0], directions[0], 4, 0.5}, nowhere = {points[0], directions[0], 4, 0};
+    const swarf_surface_feet all = {out[0], normals[0], moves}, some = {out[0], NULL, NULL};
     for (int threads = 1; threads <= 3; threads++) {
         CHECK_OK(swarf_threads_set(threads));
-        CHECK_OK(swarf_surface_refine(s, 1, points[0], directions[0], 4, 0.5, NULL, out[0], normals[0], moves));
+        CHECK_OK(swarf_surface_refine(s, 1, &lines, NULL, &all));
         CHECK_NEAR(out[0][2], -1, 1e-9);
         CHECK_NEAR(out[1][1], 2, 1e-9);
         CHECK_NEAR(out[2][2], 0, 1e-9);
@@ -188,15 +190,14 @@ static void check_refine(void)
         CHECK_NEAR(normals[1][1], -1, 1e-9);
     }
     CHECK_OK(swarf_threads_set(0));
-    CHECK_OK(swarf_surface_refine(s, 0, points[0], directions[0], 4, 0.5, NULL, out[0], normals[0], moves));
+    CHECK_OK(swarf_surface_refine(s, 0, &lines, NULL, &all));
     CHECK(moves[0] == -2 && moves[2] == -1); /* before the first move the block is whole */
-    CHECK_FAILS(swarf_surface_refine(NULL, 1, points[0], directions[0], 4, 0.5, NULL, out[0], NULL, NULL),
+    CHECK_FAILS(swarf_surface_refine(NULL, 1, &lines, NULL, &some), SWARF_ERROR_ARGUMENT, NULL);
+    CHECK_FAILS(swarf_surface_refine(s, 1, &lines, NULL, &(swarf_surface_feet){NULL, normals[0], moves}),
                 SWARF_ERROR_ARGUMENT, NULL);
-    CHECK_FAILS(swarf_surface_refine(s, 1, points[0], directions[0], 4, 0, NULL, out[0], NULL, NULL),
-                SWARF_ERROR_ARGUMENT, "reach");
+    CHECK_FAILS(swarf_surface_refine(s, 1, &nowhere, NULL, &some), SWARF_ERROR_ARGUMENT, "reach");
     directions[2][2] = 0;
-    CHECK_FAILS(swarf_surface_refine(s, 1, points[0], directions[0], 4, 0.5, NULL, out[0], NULL, NULL),
-                SWARF_ERROR_ARGUMENT, "direction 2");
+    CHECK_FAILS(swarf_surface_refine(s, 1, &lines, NULL, &some), SWARF_ERROR_ARGUMENT, "direction 2");
     swarf_surface_release(s);
     swarf_cutter_release(flat);
 }

@@ -106,19 +106,31 @@ SWARF_API void swarf_surface_evaluate(const swarf_surface_near *near, const doub
 SWARF_API int swarf_surface_crossing(const swarf_surface_near *near, const double a[3], const double b[3],
                                      double tolerance_mm, double *t, swarf_surface_point *out);
 
-/** What made the surface near `count` points: the zero along their directions as swarf_surface_refine() finds it, as
- *  seen from there; move -2 where there is none. */
-SWARF_API swarf_status swarf_surface_find(const swarf_surface *surface, size_t moves, const double *points,
-                                          const double *directions, size_t count, double reach_mm,
+/** Lines along which the surface is looked for, from points forth and back. */
+typedef struct swarf_surface_lines {
+    const double *points;     /**< 3 each, mm */
+    const double *directions; /**< 3 each, of any length but 0 */
+    size_t count;             /**< any number, in any order */
+    double reach_mm;          /**< no farther than this from the points, > 0 */
+} swarf_surface_lines;
+
+/** Where lines meet the surface; arrays of the caller. */
+typedef struct swarf_surface_feet {
+    double *points;  /**< 3 each; may be those of the lines */
+    double *normals; /**< 3 each; NULL: not wanted */
+    int64_t *moves;  /**< as in swarf_surface_point; NULL: not wanted */
+} swarf_surface_feet;
+
+/** What made the surface near points: the zero on their lines that swarf_surface_refine() finds, as seen from there;
+ *  move -2 where there is none. `out`: one per line. */
+SWARF_API swarf_status swarf_surface_find(const swarf_surface *surface, size_t moves, const swarf_surface_lines *lines,
                                           const swarf_progress *progress, swarf_surface_point *out);
 
-/** Move points (3 doubles each) along their directions (any length but 0), forth or back by at most reach_mm, onto the
- *  nearest zero; where there is none they stay, with move -2. normals_out (3 doubles each) and moves_out may be NULL;
- *  points_out may be points. All cores; any number of points, in any order. */
-SWARF_API swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves, const double *points,
-                                            const double *directions, size_t count, double reach_mm,
-                                            const swarf_progress *progress, double *points_out, double *normals_out,
-                                            int64_t *moves_out);
+/** Move points along their lines onto the nearest zero of the surface after its first `moves`; where there is none they
+ *  stay, with move -2 and the line's direction as normal. All cores. */
+SWARF_API swarf_status swarf_surface_refine(const swarf_surface *surface, size_t moves,
+                                            const swarf_surface_lines *lines, const swarf_progress *progress,
+                                            const swarf_surface_feet *out);
 
 #ifdef __cplusplus
 }
