@@ -190,6 +190,26 @@ def check_split(obj):
     assert len(document.Objects) == count and obj.Visibility
 
 
+def check_gone(samples, simulation):
+    """A document that is closed while a panel looks at its stock: that is told, and the outline is gone."""
+    from freecad.swarf_cam.gui import sectioning
+
+    name = FreeCAD.ActiveDocument.Name
+    document = FreeCAD.newDocument("gone")
+    job = samples.make_job(document)
+    document.recompute()
+    opened = sectioning.show_panel(simulation.simulate(simulation.make(job, 1.0)))
+    wait_for(lambda: opened.found is not None, "the outline")
+    FreeCAD.closeDocument(document.Name)
+    opened.position.setValue(-1)
+    opened.accept()
+    wait_for(lambda: opened.message.text(), "an error")
+    assert "deleted" in opened.message.text() and not opened.closed, opened.message.text()
+    opened.reject()
+    no_panel()
+    FreeCAD.setActiveDocument(name)
+
+
 def check_measure(obj):
     """The command, its table, and the sheet that is made of it."""
     from freecad.swarf_cam.gui import measuring
@@ -377,6 +397,7 @@ def check():
     check_section(obj)
     check_split(obj)
     check_measure(obj)
+    check_gone(samples, simulation)
     check_next(document, obj)
 
     cam = "CAMWorkbench" if "CAMWorkbench" in Gui.listWorkbenches() else "PathWorkbench"

@@ -34,7 +34,7 @@ class SectionPanel(PlanePanel):
         self._wanted = False
         try:
             made = model.add_section(self.obj, *self.plane, curves)
-        except (JobError, ValueError, RuntimeError) as error:
+        except (JobError, ReferenceError, ValueError, RuntimeError) as error:
             self.fail(error)
             return
         FreeCAD.Console.PrintMessage(translate("Swarf", "Swarf: in the document: {0}\n").format(made.Label))
