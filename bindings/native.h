@@ -155,15 +155,18 @@ extern PyStructSequence_Desc lump_desc;
 extern const char stock_lumps_doc[];
 PyObject *stock_lumps(PyObject *self, PyObject *args, PyObject *keywords);
 
+/* ---- tools.c ---- */
+
+/** The tool table of a dict {number: Cutter}; it holds its own references, for the dict may change meanwhile. */
+int tools_read(module_state *state, PyObject *dict, swarf_tool **out, size_t *count);
+void tools_free(swarf_tool *tools, size_t count);
+
 /* ---- simulation.c ---- */
 
 extern PyType_Spec simulation_spec;
 extern PyStructSequence_Desc finding_desc;
 /** A Simulation; `owner` keeps the handle alive, NULL: it is the object's own. NULL with an exception. */
 PyObject *simulation_wrap(module_state *state, const swarf_simulation *handle, PyObject *owner);
-/** The tool table of a dict {number: Cutter}; it holds its own references, for the dict may change meanwhile. */
-int tools_read(module_state *state, PyObject *dict, swarf_tool **out, size_t *count);
-void tools_free(swarf_tool *tools, size_t count);
 extern const char stock_simulate_doc[];
 PyObject *stock_simulate(PyObject *self, PyObject *args, PyObject *keywords);
 

@@ -17,12 +17,7 @@ enum { CHUNK = 65536 };
 static swarf_status read_vertex(swarf_text *text, swarf_mesh_data *out)
 {
     float p[3];
-    for (int c = 0; c < 3; c++) {
-        const swarf_word word = swarf_text_word(text);
-        double value;
-        if (!swarf_word_number(word, &value)) return swarf_text_fail(text, word, "a coordinate");
-        p[c] = (float)value;
-    }
+    SWARF_TRY(swarf_text_point(text, p));
     return swarf_mesh_data_vertex(out, p);
 }
 

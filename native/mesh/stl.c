@@ -86,12 +86,7 @@ static swarf_status read_facet(swarf_text *text, swarf_mesh_data *out)
     for (int k = 0; k < 3; k++) {
         SWARF_TRY(expect(text, "vertex"));
         float p[3];
-        for (int c = 0; c < 3; c++) {
-            const swarf_word word = swarf_text_word(text);
-            double value;
-            if (!swarf_word_number(word, &value)) return swarf_text_fail(text, word, "a coordinate");
-            p[c] = (float)value;
-        }
+        SWARF_TRY(swarf_text_point(text, p));
         SWARF_TRY(swarf_mesh_data_vertex(out, p));
     }
     SWARF_TRY(expect(text, "endloop"));

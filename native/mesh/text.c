@@ -95,3 +95,16 @@ void swarf_text_locale_end(locale_t kept)
 {
     freelocale(uselocale(kept));
 }
+
+swarf_status swarf_text_point(swarf_text *text, float out[3])
+{
+    float point[3];
+    for (int k = 0; k < 3; k++) {
+        const swarf_word word = swarf_text_word(text);
+        double value;
+        if (!swarf_word_number(word, &value)) return swarf_text_fail(text, word, "a coordinate");
+        point[k] = (float)value;
+    }
+    memcpy(out, point, sizeof point);
+    return SWARF_OK;
+}

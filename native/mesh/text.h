@@ -35,6 +35,8 @@ int swarf_word_integer(swarf_word word, int64_t *out);
 /** Decimal points are points until swarf_text_locale_end(), for this thread alone. */
 swarf_status swarf_text_locale_begin(locale_t *kept);
 void swarf_text_locale_end(locale_t kept);
+/** Three numbers on this line. SWARF_ERROR_FORMAT */
+swarf_status swarf_text_point(swarf_text *text, float out[3]);
 /** SWARF_ERROR_FORMAT: "name:line: 'word': wanted". */
 swarf_status swarf_text_fail(const swarf_text *text, swarf_word word, const char *wanted);
 

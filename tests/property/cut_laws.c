@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "cases.h"
+#include "stocks.h"
 
 enum { MOVES = 14, SAMPLES = 100000, BAND = 3 /* voxels of it on either side of the surface */ };
 
@@ -50,20 +51,6 @@ static void draw_points(test_random *random)
         }
 }
 
-static uint64_t hash_of(swarf_stock *stock)
-{
-    uint64_t hash = 0;
-    CHECK_OK(swarf_stock_hash(stock, &hash));
-    return hash;
-}
-
-static double volume_of(swarf_stock *stock)
-{
-    double volume = NAN;
-    CHECK_OK(swarf_stock_volume(stock, &volume));
-    return volume;
-}
-
 static float *values_of(swarf_stock *stock)
 {
     float *values = malloc(SAMPLES * sizeof *values);
@@ -89,7 +76,7 @@ static uint64_t hash_of_cut(const swarf_cutter *cutter, const swarf_path *paths,
 {
     swarf_stock *stock = make_stock(voxel);
     CHECK_OK(swarf_stock_cut(stock, cutter, paths, count, NULL));
-    const uint64_t hash = hash_of(stock);
+    const uint64_t hash = stock_hash(stock);
     swarf_stock_destroy(stock);
     return hash;
 }
@@ -99,11 +86,11 @@ static void check_batches(const swarf_cutter *cutter, const swarf_path *paths, c
     const size_t steps[] = {1, 5};
     for (int s = 0; s < 2; s++) {
         swarf_stock *stock = make_stock(voxel);
-        double before = volume_of(stock);
+        double before = stock_volume(stock);
         float *earlier = values_of(stock);
         for (size_t i = 0; i < MOVES; i += steps[s]) {
             CHECK_OK(swarf_stock_cut(stock, cutter, paths + i, MOVES - i < steps[s] ? MOVES - i : steps[s], NULL));
-            const double after = volume_of(stock);
+            const double after = stock_volume(stock);
             float *later = values_of(stock);
             int risen = 1;
             for (int k = 0; k < SAMPLES; k++) risen &= later[k] >= earlier[k] - 1e-5f * (float)voxel;
@@ -181,9 +168,9 @@ static void check_cancel(const swarf_cutter *cutter, const swarf_path *paths, ui
     stopper count = {.stop_at = -1};
     const swarf_progress counting = {stop, &count};
     swarf_stock *stock = make_stock(voxel);
-    const double full = volume_of(stock);
+    const double full = stock_volume(stock);
     CHECK_OK(swarf_stock_cut(stock, cutter, paths, MOVES, &counting));
-    CHECK(hash_of(stock) == whole_hash);
+    CHECK(stock_hash(stock) == whole_hash);
     CHECK(count.calls > 0);
     CHECK(!count.fell);
     swarf_stock_destroy(stock);
@@ -194,10 +181,10 @@ static void check_cancel(const swarf_cutter *cutter, const swarf_path *paths, ui
         const swarf_status status = swarf_stock_cut(stock, cutter, paths, MOVES, &progress);
         /* How often progress is reported depends on time, so a late stop may never come. */
         CHECK(status == SWARF_ERROR_CANCELLED || (i && status == SWARF_OK && stopping.calls <= stopping.stop_at));
-        const double volume = volume_of(stock);
+        const double volume = stock_volume(stock);
         CHECK(volume <= full * (1 + 1e-9) && volume >= whole_volume * (1 - 1e-9));
         CHECK_OK(swarf_stock_cut(stock, cutter, paths, MOVES, NULL));
-        CHECK_NEAR(volume_of(stock), whole_volume, 1e-6 * whole_volume);
+        CHECK_NEAR(stock_volume(stock), whole_volume, 1e-6 * whole_volume);
         float *values = values_of(stock);
         CHECK(same_field(whole, values));
         free(values);
@@ -236,13 +223,13 @@ static void check_cutter(int index, test_random *random)
 
     swarf_stock *stock = make_stock(voxel);
     CHECK_OK(swarf_stock_cut(stock, cutter, paths, MOVES, NULL));
-    const uint64_t hash = hash_of(stock);
-    const double volume = volume_of(stock);
+    const uint64_t hash = stock_hash(stock);
+    const double volume = stock_volume(stock);
     float *values = values_of(stock);
     check_neighbours(stock, values, index < 2);
     CHECK_OK(swarf_stock_cut(stock, cutter, paths, MOVES, NULL));
-    CHECK(hash_of(stock) == hash); /* cutting again changes nothing */
-    CHECK(volume_of(stock) == volume);
+    CHECK(stock_hash(stock) == hash); /* cutting again changes nothing */
+    CHECK(stock_volume(stock) == volume);
     swarf_stock_destroy(stock);
 
     memcpy(shuffled, paths, sizeof paths);

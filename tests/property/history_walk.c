@@ -2,9 +2,9 @@
 /* Laws of the history, on random programs: wherever a walk leads, the stock is that of a new history that goes there at
  * once, to the bit; with any memory limit and number of threads, after cancelled ways, and what is held stays within
  * the limit. And the surface is that of a plain simulation. */
-#include <math.h>
 #include <stdlib.h>
 
+#include "stocks.h"
 #include "walks.h"
 
 enum { STEPS = 16 };
@@ -92,13 +92,6 @@ static void check_walk(const walk_job *job, test_random *random, size_t limit, i
     CHECK_OK(swarf_threads_set(0));
 }
 
-static double volume_of(swarf_stock *stock)
-{
-    double volume = NAN;
-    CHECK_OK(swarf_stock_volume(stock, &volume));
-    return volume;
-}
-
 /* The same moves played as one and as a history; and parts of moves lie between the moves. */
 static void check_simulation(const walk_job *job, test_random *random)
 {
@@ -113,8 +106,8 @@ static void check_simulation(const walk_job *job, test_random *random)
                                       &simulation));
         swarf_simulation_destroy(simulation);
         CHECK_OK(swarf_history_seek(history, move, 0, NULL));
-        const double volume = volume_of(stock);
-        CHECK_NEAR(volume, volume_of(plain), 2e-5 * volume_of(plain));
+        const double volume = stock_volume(stock);
+        CHECK_NEAR(volume, stock_volume(plain), 2e-5 * stock_volume(plain));
         done = move;
     }
     for (int i = 0; i < 5; i++) {
@@ -122,7 +115,7 @@ static void check_simulation(const walk_job *job, test_random *random)
         double last = 0;
         for (int part = 0; part <= 4; part++) {
             CHECK_OK(swarf_history_seek(history, move, part / 4.0, NULL));
-            const double volume = volume_of(stock);
+            const double volume = stock_volume(stock);
             if (part) CHECK(volume <= last * (1 + 1e-5));
             last = volume;
         }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "stocks.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 swarf_stock *stock_block(const swarf_box *box, double voxel)
@@ -10,6 +11,20 @@ swarf_stock *stock_block(const swarf_box *box, double voxel)
     swarf_stock *stock = NULL;
     if (!CHECK_OK(swarf_stock_create_box(box, &options, &stock))) exit(test_end());
     return stock;
+}
+
+double stock_volume(swarf_stock *stock)
+{
+    double volume = NAN;
+    CHECK_OK(swarf_stock_volume(stock, &volume));
+    return volume;
+}
+
+uint64_t stock_hash(swarf_stock *stock)
+{
+    uint64_t hash = 0;
+    CHECK_OK(swarf_stock_hash(stock, &hash));
+    return hash;
 }
 
 enum { CUTTERS = 4, PATHS = STOCK_CUTS / CUTTERS };

@@ -8,6 +8,11 @@
 /** A block; owned by the caller. Exits when it cannot be made. */
 swarf_stock *stock_block(const swarf_box *box, double voxel);
 
+/** Its volume, mm3; NAN where that fails. */
+double stock_volume(swarf_stock *stock);
+/** Its hash. */
+uint64_t stock_hash(swarf_stock *stock);
+
 /** A straight move of one cutter through a block. */
 typedef struct stock_cut {
     const char *cutter; /* as swarf_cutter_parse() reads it */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stocks.h"
 #include "walks.h"
 
 static const swarf_box block = {{0, 0, 0}, {40, 20, 10}};
@@ -19,13 +20,6 @@ static swarf_stock *make_stock(void)
     swarf_stock *stock = NULL;
     if (!CHECK_OK(swarf_stock_create_box(&block, &options, &stock))) exit(test_end());
     return stock;
-}
-
-static double volume_of(swarf_stock *stock)
-{
-    double volume = NAN;
-    CHECK_OK(swarf_stock_volume(stock, &volume));
-    return volume;
 }
 
 /* Slots along x, 5 mm apart, from outside to outside: a move to each one's start, and one through it. */
@@ -56,12 +50,12 @@ static void check_slots(const swarf_tool *tool)
     uint64_t first = 0, hash = 0;
     CHECK_OK(swarf_history_create(stock, program, tool, 1, NULL, &history));
     CHECK_OK(swarf_stock_hash(stock, &first));
-    const double whole = volume_of(stock), slot = 40 * diameter * depth;
+    const double whole = stock_volume(stock), slot = 40 * diameter * depth;
     const size_t moves = swarf_program_move_count(program);
     CHECK(moves == 4 * SLOTS && swarf_history_move(history) == 0 && swarf_history_fraction(history) == 0);
     for (int i = SLOTS; i >= 0; i--) {
         CHECK_OK(swarf_history_seek(history, 4 * (size_t)i, 0, NULL));
-        CHECK_NEAR(whole - volume_of(stock), i * slot, 0.5);
+        CHECK_NEAR(whole - stock_volume(stock), i * slot, 0.5);
     }
     CHECK_OK(swarf_stock_hash(stock, &hash));
     CHECK(hash == first);
@@ -71,16 +65,16 @@ static void check_slots(const swarf_tool *tool)
         const double end = -10 + 60 * i / 20.0, half = 0.5 * diameter;
         CHECK_OK(swarf_history_seek(history, 5, i / 20.0, NULL));
         CHECK(swarf_history_move(history) == 5 && swarf_history_fraction(history) == i / 20.0);
-        const double removed = whole - volume_of(stock) - slot;
+        const double removed = whole - stock_volume(stock) - slot;
         if (end >= 0 && end + half <= 40) CHECK_NEAR(removed, depth * (diameter * end + 0.5 * M_PI * half * half), 1.5);
         if (end + half <= 0) CHECK_NEAR(removed, 0, 0.5);
         if (end >= 40) CHECK_NEAR(removed, slot, 0.5);
     }
     CHECK_OK(swarf_history_seek(history, 5, 1, NULL)); /* all of it is the next position */
     CHECK(swarf_history_move(history) == 6 && swarf_history_fraction(history) == 0);
-    CHECK_NEAR(whole - volume_of(stock), 2 * slot, 0.5);
+    CHECK_NEAR(whole - stock_volume(stock), 2 * slot, 0.5);
     swarf_history_destroy(history);
-    CHECK_NEAR(whole - volume_of(stock), 2 * slot, 0.5); /* it stays the caller's */
+    CHECK_NEAR(whole - stock_volume(stock), 2 * slot, 0.5); /* it stays the caller's */
     swarf_stock_destroy(stock);
     swarf_program_release(program);
 }

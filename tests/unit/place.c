@@ -94,20 +94,6 @@ static swarf_stock *place(swarf_stock *stock, const swarf_placement *placement, 
     return placed;
 }
 
-static uint64_t hash_of(swarf_stock *stock)
-{
-    uint64_t hash = 0;
-    CHECK_OK(swarf_stock_hash(stock, &hash));
-    return hash;
-}
-
-static double volume_of(swarf_stock *stock)
-{
-    double volume = NAN;
-    CHECK_OK(swarf_stock_volume(stock, &volume));
-    return volume;
-}
-
 /* All 24 ways to lie on an axis, by any shift: there, the old values; and back, the old bits. */
 static void check_quarters(void)
 {
@@ -116,8 +102,8 @@ static void check_quarters(void)
         swarf_stock *stock = make_block(2 * voxel);
         job j = first_job();
         if (cut) play(stock, &j);
-        const uint64_t hash = hash_of(stock);
-        const double volume = volume_of(stock);
+        const uint64_t hash = stock_hash(stock);
+        const double volume = stock_volume(stock);
         int ways = 0;
         for (int turn = 0; turn < 64; turn++) {
             const double angle[3] = {(turn & 3) * pi / 2, (turn >> 2 & 3) * pi / 2, (turn >> 4) * pi / 2};
@@ -126,8 +112,8 @@ static void check_quarters(void)
             for (int k = 0; k < 3; k++) shift[k] = test_random_in(&random, -50, 50);
             const swarf_placement there = placement_make(angle, shift), back = swarf_placement_inverse(&there);
             swarf_stock *placed = place(stock, &there, NULL, 0, 1), *again = place(placed, &back, NULL, 0, 1);
-            CHECK(hash_of(again) == hash);
-            CHECK_NEAR(volume_of(placed), volume, 1e-7 * volume); /* integrated in another order */
+            CHECK(stock_hash(again) == hash);
+            CHECK_NEAR(stock_volume(placed), volume, 1e-7 * volume); /* integrated in another order */
             for (int i = 0; i < 50; i++) {
                 double p[3], q[3];
                 float was, is;
@@ -156,10 +142,10 @@ static void check_untouched(void)
     swarf_stock *there = place(turned, &over, NULL, 0, 1);
     job k = make_job((double[]){-5, -SLOT_Y, -SLOT_Z - 4}, (double[]){25, -SLOT_Y, -SLOT_Z - 4});
     play(there, &k); /* from above: y -8 .. -4, z above -2, all of it */
-    CHECK_NEAR(volume_of(there), volume_of(plain) - 20.01 * 4 * 6.03, 0.5);
+    CHECK_NEAR(stock_volume(there), stock_volume(plain) - 20.01 * 4 * 6.03, 0.5);
     play(turned, &j);
     swarf_stock *cut = place(turned, &over, NULL, 0, 1);
-    CHECK_NEAR(volume_of(cut), volume_of(turned), 1e-7 * volume_of(turned));
+    CHECK_NEAR(stock_volume(cut), stock_volume(turned), 1e-7 * stock_volume(turned));
     swarf_surface *surface = NULL;
     CHECK_OK(swarf_surface_create(cut, k.program, &k.tool, 1, NULL, &surface)); /* a block that was cut is none */
     swarf_surface_near *near = NULL;
@@ -325,8 +311,8 @@ static void check_cost(void)
         check_plain(plain, &back, first_distance, 0.03);
         check_plain(again, &none, first_distance, 0.1);
         const double truth = 20.01 * (12.04 * 6.03 - 4 * 2.01);
-        CHECK_NEAR(volume_of(exact), truth, 1e-3 * truth);
-        CHECK_NEAR(volume_of(plain), truth, 1e-3 * truth);
+        CHECK_NEAR(stock_volume(exact), truth, 1e-3 * truth);
+        CHECK_NEAR(stock_volume(plain), truth, 1e-3 * truth);
         swarf_stock_destroy(exact);
         swarf_stock_destroy(plain);
         swarf_stock_destroy(again);
@@ -353,7 +339,7 @@ static void check_round(void)
     CHECK_OK(swarf_threads_set(1));
     swarf_stock *again = place(stock, &there, NULL, 0, 0);
     CHECK_OK(swarf_threads_set(3));
-    CHECK(hash_of(again) == hash_of(plain));
+    CHECK(stock_hash(again) == stock_hash(plain));
     CHECK_OK(swarf_threads_set(0));
     swarf_stock_destroy(again);
     swarf_stock_destroy(stock);
@@ -492,7 +478,7 @@ static void check_chain(const double angle[3], int lossless)
     swarf_stock *turned = place(stock, &over, first, 0, lossless);
     CHECK_OK(swarf_threads_set(3));
     swarf_stock *again = place(stock, &over, first, 0, lossless);
-    CHECK(hash_of(again) == hash_of(turned));
+    CHECK(stock_hash(again) == stock_hash(turned));
     swarf_stock_destroy(again);
     CHECK_OK(swarf_threads_set(0));
     double middle[3] = {10, 6, -6};

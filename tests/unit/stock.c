@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "cases.h"
+#include "stocks.h"
 
 static const swarf_box cube = {{0, 0, 0}, {10, 10, 10}};
 
@@ -16,20 +17,6 @@ static swarf_stock *make_stock(double voxel)
     swarf_stock *stock = NULL;
     if (!CHECK_OK(swarf_stock_create_box(&cube, &options, &stock))) exit(test_end());
     return stock;
-}
-
-static double volume_of(swarf_stock *stock)
-{
-    double volume = NAN;
-    CHECK_OK(swarf_stock_volume(stock, &volume));
-    return volume;
-}
-
-static uint64_t hash_of(swarf_stock *stock)
-{
-    uint64_t hash = 0;
-    CHECK_OK(swarf_stock_hash(stock, &hash));
-    return hash;
 }
 
 static swarf_cutter *parse(const char *text)
@@ -140,7 +127,7 @@ static void check_cut_refused(void)
     swarf_stock *stock = make_stock(0.2);
     swarf_cutter *cutter = parse("flat:d=4,l=20");
     swarf_path path = oracle_line(2, 2, 5, 8, 2, 5);
-    const uint64_t before = hash_of(stock);
+    const uint64_t before = stock_hash(stock);
     CHECK_FAILS(swarf_stock_cut(NULL, cutter, &path, 1, NULL), SWARF_ERROR_ARGUMENT, NULL);
     CHECK_FAILS(swarf_stock_cut(stock, NULL, &path, 1, NULL), SWARF_ERROR_ARGUMENT, NULL);
     CHECK_FAILS(swarf_stock_cut(stock, cutter, NULL, 1, NULL), SWARF_ERROR_ARGUMENT, NULL);
@@ -155,7 +142,7 @@ static void check_cut_refused(void)
     path.arc.plane = 3;
     CHECK_FAILS(swarf_stock_cut(stock, cutter, &path, 1, NULL), SWARF_ERROR_ARGUMENT, NULL);
     CHECK_OK(swarf_stock_cut(stock, cutter, NULL, 0, NULL));
-    CHECK(hash_of(stock) == before);
+    CHECK(stock_hash(stock) == before);
     swarf_cutter_release(cutter);
     swarf_stock_destroy(stock);
     swarf_stock_destroy(NULL);
@@ -176,20 +163,20 @@ static void check_missed(void)
         oracle_arc((double[3]){20, 5, 5}, (double[3]){5, 5, 5}, SWARF_PLANE_XY, 6.283185307179586, 0),
         oracle_arc((double[3]){20, 5, 50}, (double[3]){5, 5, 50}, SWARF_PLANE_XY, -200, -90),
     };
-    const uint64_t before = hash_of(stock);
+    const uint64_t before = stock_hash(stock);
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
         CHECK_OK(swarf_stock_cut(stock, cutter, &paths[i], 1, NULL));
-        if (!CHECK(hash_of(stock) == before)) printf("    path %zu\n", i);
+        if (!CHECK(stock_hash(stock) == before)) printf("    path %zu\n", i);
     }
     CHECK_OK(swarf_stock_cut(stock, cutter, paths, sizeof paths / sizeof paths[0], NULL));
-    CHECK(hash_of(stock) == before);
+    CHECK(stock_hash(stock) == before);
     swarf_cutter_release(cutter);
 
     cutter = parse("flat:d=4,l=20"); /* moves without motion are skipped, whatever else they hold */
     swarf_path event = oracle_line(5, 5, 5, 5, 5, 5);
     event.has_motion = 0;
     CHECK_OK(swarf_stock_cut(stock, cutter, &event, 1, NULL));
-    CHECK(hash_of(stock) == before);
+    CHECK(stock_hash(stock) == before);
     swarf_cutter_release(cutter);
 
     const swarf_profile_node nodes[] = {{3, 0, 0}, {3, 20, 0}}; /* no flutes: nothing to cut with */
@@ -197,7 +184,7 @@ static void check_missed(void)
     const swarf_path through = oracle_line(2, 2, 5, 8, 2, 5);
     CHECK_OK(swarf_cutter_create(&shank, 1, &cutter));
     CHECK_OK(swarf_stock_cut(stock, cutter, &through, 1, NULL));
-    CHECK(hash_of(stock) == before);
+    CHECK(stock_hash(stock) == before);
     swarf_cutter_release(cutter);
     swarf_stock_destroy(stock);
 }
@@ -209,7 +196,7 @@ static void check_standing(void)
     swarf_cutter *cutter = parse("flat:d=4,l=20,sd=8,sl=30"); /* the shank must not cut */
     const swarf_path hole = oracle_line(5.01, 4.98, 3.33, 5.01, 4.98, 3.33);
     CHECK_OK(swarf_stock_cut(stock, cutter, &hole, 1, NULL));
-    CHECK_NEAR(1000 - volume_of(stock), pi * 4 * 6.67, 1e-4 * pi * 4 * 6.67);
+    CHECK_NEAR(1000 - stock_volume(stock), pi * 4 * 6.67, 1e-4 * pi * 4 * 6.67);
     swarf_box box;
     CHECK_OK(swarf_stock_box(stock, &box));
     for (int k = 0; k < 3; k++) {
@@ -227,14 +214,14 @@ static void check_large_tool(void)
     swarf_cutter *cutter = parse("flat:d=400,l=200");
     const swarf_path above = oracle_line(-3, 5, 4.03, 8, 5, 4.03), all = oracle_line(0, 0, -5, 1, 0, -5);
     CHECK_OK(swarf_stock_cut(stock, cutter, &above, 1, NULL));
-    CHECK_NEAR(volume_of(stock), 403, 1e-4 * 403);
+    CHECK_NEAR(stock_volume(stock), 403, 1e-4 * 403);
     CHECK_OK(swarf_stock_cut(stock, cutter, &all, 1, NULL));
-    CHECK_NEAR(volume_of(stock), 0, 0);
+    CHECK_NEAR(stock_volume(stock), 0, 0);
     swarf_box box;
     CHECK_OK(swarf_stock_box(stock, &box));
     CHECK(box.lo[0] > box.hi[0]);
     CHECK_OK(swarf_stock_cut(stock, cutter, &all, 1, NULL));
-    CHECK_NEAR(volume_of(stock), 0, 0);
+    CHECK_NEAR(stock_volume(stock), 0, 0);
     swarf_cutter_release(cutter);
     swarf_stock_destroy(stock);
 }
@@ -255,9 +242,9 @@ static void check_tiny_moves(void)
     const swarf_path arc = oracle_arc((double[3]){7.5, 5, 7.77}, (double[3]){5, 5, 0}, SWARF_PLANE_XY, two_pi, 0);
     CHECK_OK(swarf_stock_cut(tiny, cutter, paths, COUNT, NULL));
     CHECK_OK(swarf_stock_cut(whole, cutter, &arc, 1, NULL));
-    const double removed = 1000 - volume_of(whole);
+    const double removed = 1000 - stock_volume(whole);
     CHECK(removed > 50);
-    CHECK_NEAR(1000 - volume_of(tiny), removed, 1e-5 * removed);
+    CHECK_NEAR(1000 - stock_volume(tiny), removed, 1e-5 * removed);
     swarf_stock_destroy(tiny);
     swarf_stock_destroy(whole);
     swarf_cutter_release(cutter);
@@ -286,13 +273,14 @@ static void check_faces(void)
         options.voxel_mm = test_random_in(&random, 0.04, 0.12);
         swarf_stock *stock = NULL;
         if (!CHECK_OK(swarf_stock_create_box(&box, &options, &stock))) continue;
-        const double h2 = options.voxel_mm * options.voxel_mm, before = volume_of(stock);
+        const double h2 = options.voxel_mm * options.voxel_mm, before = stock_volume(stock);
         CHECK_NEAR(before, volume, 1e-4 * volume + 0.25 * h2 * edges);
         const double x = box.lo[0] + 1, y = box.lo[1] + 1, bottom = box.lo[2] + 1;
         const swarf_path hole = oracle_line(x, y, box.hi[2] + 1, x, y, bottom);
         const double depth = box.hi[2] - bottom, removed = 0.7853981633974483 * depth;
         CHECK_OK(swarf_stock_cut(stock, cutter, &hole, 1, NULL));
-        CHECK_NEAR(before - volume_of(stock), removed, 1e-4 * removed + h2 * (0.25 * 3.1415926535897932 + 0.8 * depth));
+        CHECK_NEAR(before - stock_volume(stock), removed,
+                   1e-4 * removed + h2 * (0.25 * 3.1415926535897932 + 0.8 * depth));
         swarf_stock_destroy(stock);
     }
     swarf_cutter_release(cutter);
@@ -312,7 +300,7 @@ static void check_wide_arcs(void)
     for (int i = 0; i < 2; i++) {
         swarf_stock *stock = make_stock(0.05);
         CHECK_OK(swarf_stock_cut(stock, cutter, &circles[i], 1, NULL));
-        CHECK_NEAR(1000 - volume_of(stock), removed, 1e-4 * removed);
+        CHECK_NEAR(1000 - stock_volume(stock), removed, 1e-4 * removed);
         /* the walls of the groove, at its ends and in the middle, to a hundredth of a voxel */
         for (int k = 0; k < 5; k++) {
             const double along = 1 + 2 * k, sag = (along - 5) * (along - 5) / (2 * wide);
@@ -341,7 +329,7 @@ static void check_half_turns(void)
             swarf_stock *stock = make_stock(0.02);
             CHECK_OK(swarf_stock_cut(stock, cutter, &arc, 1, NULL));
             const double removed = 3.99 * (2 * 2.5 * turn + pi);
-            CHECK_NEAR(1000 - volume_of(stock), removed, 1e-4 * removed);
+            CHECK_NEAR(1000 - stock_volume(stock), removed, 1e-4 * removed);
             swarf_stock_destroy(stock);
         }
     swarf_cutter_release(cutter);
@@ -359,13 +347,13 @@ static void check_far_moves(void)
         oracle_line(-1e12, 7e11, -1e12, -9e11, 1e12, 1e12),
         oracle_line(-1e12, -30, 5, 1e12, -30, 5),
     };
-    const uint64_t before = hash_of(stock);
+    const uint64_t before = stock_hash(stock);
     for (size_t i = 0; i < sizeof beside / sizeof beside[0]; i++)
         CHECK_OK(swarf_stock_cut(stock, cutter, &beside[i], 1, NULL));
-    CHECK(hash_of(stock) == before);
+    CHECK(stock_hash(stock) == before);
     const swarf_path down = oracle_line(5, 5, 1e12, 5, 5, 4.01);
     CHECK_OK(swarf_stock_cut(stock, cutter, &down, 1, NULL));
-    CHECK_NEAR(1000 - volume_of(stock), 12.566370614359172 * 5.99, 1e-3 * 75);
+    CHECK_NEAR(1000 - stock_volume(stock), 12.566370614359172 * 5.99, 1e-3 * 75);
     swarf_cutter_release(cutter);
     swarf_stock_destroy(stock);
 }
@@ -387,7 +375,7 @@ static void check_many_moves(void)
     swarf_stock *stock = make_stock(0.5);
     swarf_cutter *cutter = parse("flat:d=1,l=30");
     CHECK_OK(swarf_stock_cut(stock, cutter, paths, count, NULL));
-    CHECK_NEAR(volume_of(stock), 703, 1e-3 * 703); /* nothing above the lines is left */
+    CHECK_NEAR(stock_volume(stock), 703, 1e-3 * 703); /* nothing above the lines is left */
     printf("%zu moves: %.1f s of processor time, %zu MB at most\n", count, (double)(clock() - start) / CLOCKS_PER_SEC,
            swarf_memory_peak() >> 20);
     swarf_cutter_release(cutter);
