@@ -148,25 +148,11 @@ static void check_oracle(const char *name, const swarf_cutter *cutter, const swa
     CHECK(removed > SAMPLES / 1000);
 }
 
-typedef struct stopper {
-    long calls, stop_at;
-    double last;
-    int fell;
-} stopper;
-
-static int stop(void *user, double fraction)
-{
-    stopper *s = user;
-    s->fell |= fraction < s->last || fraction < 0 || fraction > 1;
-    s->last = fraction;
-    return s->calls++ == s->stop_at;
-}
-
 static void check_cancel(const swarf_cutter *cutter, const swarf_path *paths, uint64_t whole_hash, const float *whole,
                          double whole_volume, test_random *random)
 {
-    stopper count = {.stop_at = -1};
-    const swarf_progress counting = {stop, &count};
+    test_stopper count = {.after = -1};
+    const swarf_progress counting = {test_stop, &count};
     swarf_stock *stock = make_stock(voxel);
     const double full = stock_volume(stock);
     CHECK_OK(swarf_stock_cut(stock, cutter, paths, MOVES, &counting));
@@ -175,12 +161,12 @@ static void check_cancel(const swarf_cutter *cutter, const swarf_path *paths, ui
     CHECK(!count.fell);
     swarf_stock_destroy(stock);
     for (int i = 0; i < 4; i++) {
-        stopper stopping = {.stop_at = i ? (long)test_random_below(random, (uint64_t)count.calls) : 0};
-        const swarf_progress progress = {stop, &stopping};
+        test_stopper stopping = {.after = i ? (long)test_random_below(random, (uint64_t)count.calls) : 0};
+        const swarf_progress progress = {test_stop, &stopping};
         stock = make_stock(voxel);
         const swarf_status status = swarf_stock_cut(stock, cutter, paths, MOVES, &progress);
         /* How often progress is reported depends on time, so a late stop may never come. */
-        CHECK(status == SWARF_ERROR_CANCELLED || (i && status == SWARF_OK && stopping.calls <= stopping.stop_at));
+        CHECK(status == SWARF_ERROR_CANCELLED || (i && status == SWARF_OK && stopping.calls <= stopping.after));
         const double volume = stock_volume(stock);
         CHECK(volume <= full * (1 + 1e-9) && volume >= whole_volume * (1 - 1e-9));
         CHECK_OK(swarf_stock_cut(stock, cutter, paths, MOVES, NULL));

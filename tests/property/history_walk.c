@@ -9,20 +9,6 @@
 
 enum { STEPS = 16 };
 
-typedef struct stopper {
-    long left; /* reports until it stops; negative: never */
-    double last;
-    int fell;
-} stopper;
-
-static int stop(void *user, double fraction)
-{
-    stopper *s = user;
-    s->fell |= fraction < s->last || fraction < 0 || fraction > 1;
-    s->last = fraction;
-    return s->left-- == 0;
-}
-
 /* Where to go next: near by, one back, far away, or to the ends. */
 static size_t choose(test_random *random, size_t at, size_t moves)
 {
@@ -69,8 +55,8 @@ static void check_walk(const walk_job *job, test_random *random, size_t limit, i
         const size_t move = choose(random, swarf_history_move(history), job->moves);
         const double fraction =
             move < job->moves && test_random_below(random, 3) == 0 ? test_random_in(random, 0, 1) : 0;
-        stopper stopping = {.left = test_random_below(random, 3) ? -1 : (long)test_random_below(random, 20)};
-        const swarf_progress progress = {stop, &stopping};
+        test_stopper stopping = {.after = test_random_below(random, 3) ? -1 : (long)test_random_below(random, 20)};
+        const swarf_progress progress = {test_stop, &stopping};
         CHECK_OK(swarf_threads_set(threads[test_random_below(random, 5)]));
         const swarf_status status = swarf_history_seek(history, move, fraction, &progress);
         CHECK(!stopping.fell);

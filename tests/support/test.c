@@ -89,6 +89,22 @@ int test_size(void)
     return is_wished("SWARF_TEST_FULL") ? TEST_FULL : is_wished("SWARF_TEST_LIGHT") ? TEST_LIGHT : TEST_USUAL;
 }
 
+int test_stop(void *stopper, double fraction)
+{
+    test_stopper *s = stopper;
+    s->fell |= fraction < s->last || fraction < 0 || fraction > 1;
+    s->last = fraction;
+    return s->calls++ == s->after;
+}
+
+int test_same_mesh(const swarf_mesh *a, const swarf_mesh *b)
+{
+    const swarf_triangles s = swarf_mesh_triangles(a), t = swarf_mesh_triangles(b);
+    return s.vertex_count == t.vertex_count && s.triangle_count == t.triangle_count &&
+           memcmp(s.xyz, t.xyz, s.vertex_count * 3 * sizeof *s.xyz) == 0 &&
+           memcmp(s.index, t.index, s.triangle_count * 3 * sizeof *s.index) == 0;
+}
+
 const char *test_source(void)
 {
     return SWARF_SOURCE_DIR;

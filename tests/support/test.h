@@ -40,6 +40,18 @@ uint64_t test_random_below(test_random *random, uint64_t count);
 enum { TEST_LIGHT, TEST_USUAL, TEST_FULL };
 int test_size(void);
 
+/** A progress callback's `user`: stops after some reports, and looks whether fractions ever fall or leave 0 .. 1. */
+typedef struct test_stopper {
+    long calls; /* reports so far */
+    long after; /* stops at the report that comes after so many; negative: never */
+    double last;
+    int fell;
+} test_stopper;
+int test_stop(void *stopper, double fraction);
+
+/** Whether two meshes are the same to the bit. */
+int test_same_mesh(const swarf_mesh *a, const swarf_mesh *b);
+
 /** Folder of the source tree. */
 const char *test_source(void);
 

@@ -443,15 +443,12 @@ static void check_reach(int index, const char *name, const part *truth, swarf_st
 static void check_split(swarf_stock *stock, const swarf_contour_options *options, const swarf_mesh *mesh,
                         const swarf_contour_report *report)
 {
-    const swarf_triangles a = swarf_mesh_triangles(mesh);
     CHECK(report->split_edges > 500);
     for (int threads = 1; threads <= 8; threads += threads < 3 ? 1 : 5) {
         swarf_mesh *other = NULL;
         CHECK_OK(swarf_threads_set(threads));
         if (!CHECK_OK(swarf_mesh_contour(stock, options, NULL, &other, NULL))) continue;
-        const swarf_triangles b = swarf_mesh_triangles(other);
-        CHECK(a.vertex_count == b.vertex_count && memcmp(a.xyz, b.xyz, a.vertex_count * 12) == 0);
-        CHECK(a.triangle_count == b.triangle_count && memcmp(a.index, b.index, a.triangle_count * 12) == 0);
+        CHECK(test_same_mesh(mesh, other));
         swarf_mesh_release(other);
     }
     CHECK_OK(swarf_threads_set(0));
@@ -558,9 +555,7 @@ static void check_surfaces(void)
         CHECK_OK(swarf_threads_set(threads));
         if (!CHECK_OK(swarf_mesh_contour(stock, &options, NULL, &mesh, &report))) continue;
         if (!first) first = swarf_mesh_retain(mesh);
-        const swarf_triangles a = swarf_mesh_triangles(first), b = swarf_mesh_triangles(mesh);
-        CHECK(a.vertex_count == b.vertex_count && memcmp(a.xyz, b.xyz, a.vertex_count * 12) == 0);
-        CHECK(a.triangle_count == b.triangle_count && memcmp(a.index, b.index, a.triangle_count * 12) == 0);
+        CHECK(test_same_mesh(first, mesh));
         swarf_mesh_release(mesh);
     }
     CHECK_OK(swarf_threads_set(0));

@@ -246,9 +246,7 @@ static void check_from_stock(void)
             first = mesh;
             continue;
         }
-        const swarf_triangles a = swarf_mesh_triangles(first), b = swarf_mesh_triangles(mesh);
-        CHECK(a.vertex_count == b.vertex_count && memcmp(a.xyz, b.xyz, a.vertex_count * 12) == 0);
-        CHECK(a.triangle_count == b.triangle_count && memcmp(a.index, b.index, a.triangle_count * 12) == 0);
+        CHECK(test_same_mesh(first, mesh));
         swarf_mesh_release(mesh);
     }
     CHECK_OK(swarf_threads_set(0));
