@@ -5,7 +5,8 @@
  * do, one is missed, and an edge where no crossing tells of both its faces is missed too. There a facet's edge leaves
  * the planes of the facets on both its sides. It is split where the faces meet that are seen along it, and if none do
  * at its middle, drawn onto the surface; edges of facets that came to be by that are looked at again, round by round.
- * Splitting an edge in both its facets alike leaves the surface closed.
+ * A facet that cuts off a corner of the surface has all of its edges on it, on another face each: its longest edge is
+ * split at that corner. Splitting an edge in both its facets alike leaves the surface closed.
  */
 #include "mesh/crease.h"
 
@@ -149,14 +150,21 @@ static int add_hidden(const looking *l, contour_polygon *polygon)
     return add_face(l, x, (const double[3]){0}, polygon);
 }
 
-/* Where faces meet that are seen along the edge. */
-static int meet_along(const looking *l, double out[3])
+/* Without any faces as yet. */
+static contour_polygon begin_polygon(const looking *l)
 {
     contour_polygon polygon = {.voxel = l->voxel};
     for (int k = 0; k < 3; k++) {
         polygon.origin[k] = l->box.lo[k];
         polygon.bounds.hi[k] = (l->box.hi[k] - l->box.lo[k]) / l->voxel;
     }
+    return polygon;
+}
+
+/* Where faces meet that are seen along the edge. */
+static int meet_along(const looking *l, double out[3])
+{
+    contour_polygon polygon = begin_polygon(l);
     for (int i = 0; i < (int)(sizeof samples / sizeof *samples); i++) {
         double x[3];
         along(l, samples[i], x);
@@ -169,6 +177,56 @@ static int meet_along(const looking *l, double out[3])
         return 0;
     for (int k = 0; k < 3; k++) out[k] = polygon.origin[k] + x[k] * l->voxel;
     return is_between(l, out);
+}
+
+static double square_apart(const float a[3], const float b[3])
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++) sum += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
+    return sum;
+}
+
+/* How far (in voxels) the surface is from the middle of a facet of the edge with this third corner; 0 when the edge is
+ * not its longest, at which alone it is split. */
+static double find_off_facet(const looking *l, const float corners[12], const float third[3])
+{
+    const double longest = square_apart(corners, corners + 3);
+    swarf_surface_point found;
+    double x[3];
+    if (!(longest > square_apart(corners + 3, third) && longest > square_apart(third, corners))) return 0;
+    for (int k = 0; k < 3; k++) x[k] = (l->p[k] + l->q[k] + (double)third[k]) / 3;
+    return fabs(look(l, x, &found));
+}
+
+/* Where the faces meet that the edges of such a facet are on. */
+static int meet_above(const looking *l, const float third[3], double out[3])
+{
+    static const double none[3] = {0};
+    contour_polygon polygon = begin_polygon(l);
+    double x[3][3];
+    for (int k = 0; k < 3; k++) {
+        x[0][k] = 0.5 * (l->p[k] + l->q[k]);
+        x[1][k] = 0.5 * (l->q[k] + (double)third[k]);
+        x[2][k] = 0.5 * ((double)third[k] + l->p[k]);
+    }
+    for (int i = 0; i < 3; i++)
+        if (!add_face(l, x[i], none, &polygon)) return 0;
+    if (swarf_contour_vertex_exact(&polygon, l->look->near, x[0]) < 2) return 0;
+    for (int k = 0; k < 3; k++) out[k] = polygon.origin[k] + x[0][k] * l->voxel;
+    return is_between(l, out);
+}
+
+/* Split an edge that is on the surface where one of its facets is not. */
+static void split_below(const looking *l, crease_split *split)
+{
+    double x[3];
+    for (const float *third = split->corners + 6; third < split->corners + 12 && !split->made; third += 3) {
+        const double off = find_off_facet(l, split->corners, third);
+        if (off <= off_surface) continue;
+        split->off = (float)fmax((double)split->off, off);
+        split->made = (uint8_t)meet_above(l, third, x);
+        for (int k = 0; k < 3 && split->made; k++) split->point[k] = (float)x[k];
+    }
 }
 
 /* The corners of an edge and of its facets. */
@@ -203,7 +261,10 @@ static swarf_status split_edge(const crease_splits *s, crease_look *near, size_t
     begin_edge(split->corners, l.voxel, beside, &l);
     SWARF_TRY(swarf_crease_look_into(near, &l.box));
     split->off = (float)find_off(&l);
-    if ((double)split->off <= off_surface) return SWARF_OK;
+    if ((double)split->off <= off_surface) {
+        split_below(&l, split);
+        return SWARF_OK;
+    }
     double x[3];
     swarf_surface_point found;
     split->made = (uint8_t)meet_along(&l, x);

@@ -65,24 +65,43 @@ static int is_in_cell(const faces *s, int i, int j, const double p[3], const dou
 
 enum { MOST_NEAR = 64 };
 
-double faces_edge_distance(const faces *s, const double p[3], int *corner)
+/* Faces within three voxels, and how far they are. */
+static int find_near(const faces *s, const double p[3], int near[MOST_NEAR], double value[MOST_NEAR])
 {
-    int near[MOST_NEAR], count = 0;
-    double value[MOST_NEAR], least = INFINITY;
+    int count = 0;
     for (int i = 0; i < s->count && count < MOST_NEAR; i++) {
         const double off = fabs(s->value(s->of, i, p));
         if (off >= 3 * s->voxel) continue;
         near[count] = i;
         value[count++] = off;
     }
+    return count;
+}
+
+int faces_edges(const faces *s, const double p[3], faces_edge out[FACES_MOST_EDGES])
+{
+    int near[MOST_NEAR], found = 0;
+    double value[MOST_NEAR];
+    const int count = find_near(s, p, near, value);
     for (int i = 0; i < count; i++)
-        for (int j = 0; j < i && value[i] < 2 * s->voxel; j++) {
+        for (int j = 0; j < i && value[i] < 2 * s->voxel && found < FACES_MOST_EDGES; j++) {
             double q[3], along[3];
             if (near[i] < s->apart) continue;
             if (value[j] > 2 * s->voxel || !find_edge(s, near[i], near[j], p, q, along)) continue;
             if (!is_in_cell(s, near[i], near[j], p, q, along)) continue;
-            least = fmin(least, hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]) / s->voxel);
+            const double away = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]) / s->voxel;
+            out[found++] = (faces_edge){{near[i], near[j]}, away};
         }
-    *corner = count > 2;
+    return found;
+}
+
+double faces_edge_distance(const faces *s, const double p[3], int *corner)
+{
+    faces_edge edge[FACES_MOST_EDGES];
+    int near[MOST_NEAR];
+    double value[MOST_NEAR], least = INFINITY;
+    const int count = faces_edges(s, p, edge);
+    for (int i = 0; i < count; i++) least = fmin(least, edge[i].away);
+    *corner = find_near(s, p, near, value) > 2;
     return isinf(least) ? -1 : least;
 }

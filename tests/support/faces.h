@@ -18,6 +18,16 @@ typedef struct faces {
 /** Gradient of a face, or (-1) of the whole part; whether it is one of a distance, as it is not where faces meet. */
 int faces_gradient(const faces *s, int face, const double p[3], double out[3]);
 
+/** An edge that passes a cell, and how far a vertex in it is from that, in voxels. */
+typedef struct faces_edge {
+    int face[2]; /* the first is the greater number */
+    double away;
+} faces_edge;
+enum { FACES_MOST_EDGES = 32 };
+
+/** The edges that pass the cell of a vertex for half a voxel at least; how many. */
+int faces_edges(const faces *s, const double p[3], faces_edge out[FACES_MOST_EDGES]);
+
 /** Of a vertex whose cell an edge passes for half a voxel at least the distance to that edge, in voxels; negative for
  *  others. corner: whether another face is within three voxels. */
 double faces_edge_distance(const faces *s, const double p[3], int *corner);
