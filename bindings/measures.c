@@ -140,35 +140,134 @@ PyObject *mesh_shells(PyObject *self, PyObject *Py_UNUSED(none))
 const char mesh_keep_shells_doc[] =
     "keep_shells($self, shells, /)\n--\n\nA Mesh of these shells alone, by their places in shells().";
 
+/** The place of a shell; one that is too large for it becomes UINT32_MAX. 1, or 0 with an exception. */
+static int shell_place(PyObject *item, uint32_t *out)
+{
+    Py_ssize_t value = 0;
+    if (!item || !count_read(item, &value)) return 0;
+    if (value < 0) {
+        PyErr_Format(PyExc_ValueError, "shells: %R is not the place of one", item);
+        return 0;
+    }
+    *out = (size_t)value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
+    return 1;
+}
+
+/** The places of shells in a sequence, freed with PyMem_Free(); NULL with an exception. */
+static uint32_t *shell_places(PyObject *list, Py_ssize_t *count)
+{
+    *count = PySequence_Size(list);
+    if (*count < 0) return NULL;
+    uint32_t *places = PyMem_Malloc((size_t)*count * sizeof *places + 1);
+    if (!places) PyErr_NoMemory();
+    for (Py_ssize_t i = 0; places && i < *count; i++) {
+        PyObject *item = PySequence_GetItem(list, i);
+        const int is_read = shell_place(item, &places[i]);
+        Py_XDECREF(item);
+        if (is_read) continue;
+        PyMem_Free(places);
+        places = NULL;
+    }
+    return places;
+}
+
 PyObject *mesh_keep_shells(PyObject *self, PyObject *list)
 {
-    const Py_ssize_t count = PySequence_Size(list);
-    if (count < 0) return NULL;
-    uint32_t *numbers = PyMem_Malloc((size_t)count * sizeof *numbers + 1);
-    if (!numbers) return PyErr_NoMemory();
-    for (Py_ssize_t i = 0; i < count; i++) {
-        PyObject *item = PySequence_GetItem(list, i);
-        Py_ssize_t value = 0;
-        const int is_read = item && count_read(item, &value);
-        if (is_read && value < 0) PyErr_Format(PyExc_ValueError, "shells: %R is not the place of one", item);
-        Py_XDECREF(item);
-        if (!is_read || value < 0) {
-            PyMem_Free(numbers);
-            return NULL;
-        }
-        numbers[i] = (size_t)value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
-    }
+    Py_ssize_t count;
+    uint32_t *places = shell_places(list, &count);
+    if (!places) return NULL;
     PyObject *result = NULL;
     native_call call;
     swarf_measures *measures = measures_of(self);
     if (measures && !call_begin(&call, NULL)) {
         swarf_mesh *handle = NULL;
-        const swarf_status status =
-            swarf_mesh_create_shells(handle_of(self), measures, numbers, (size_t)count, &handle);
+        const swarf_status status = swarf_mesh_create_shells(handle_of(self), measures, places, (size_t)count, &handle);
         if (!call_end(&call, state_of(self), status)) result = mesh_wrap(Py_TYPE(self), handle);
     }
     swarf_measures_destroy(measures);
-    PyMem_Free(numbers);
+    PyMem_Free(places);
+    return result;
+}
+
+const char mesh_split_shells_doc[] =
+    "split_shells($self, groups, *, progress=None)\n--\n\n"
+    "A tuple of a Mesh per group of shells, each group a sequence of their places in shells(); a shell is in one group "
+    "at\n"
+    "most. All are made in one pass: many take no longer than few.";
+
+/** Tell each shell of a group its number. 0, or -1 with an exception. */
+static int number_group(PyObject *list, uint32_t group, size_t shells, uint32_t *group_of)
+{
+    Py_ssize_t count;
+    uint32_t *places = list ? shell_places(list, &count) : NULL;
+    if (!places) return -1;
+    int failed = 0;
+    for (Py_ssize_t i = 0; i < count && !failed; i++) {
+        failed = places[i] >= shells || group_of[places[i]] != UINT32_MAX;
+        if (places[i] >= shells)
+            PyErr_Format(PyExc_ValueError, "groups: shell %u of %zu", (unsigned)places[i], shells);
+        else if (failed)
+            PyErr_Format(PyExc_ValueError, "groups: shell %u is in two", (unsigned)places[i]);
+        else
+            group_of[places[i]] = group;
+    }
+    PyMem_Free(places);
+    return failed ? -1 : 0;
+}
+
+/** The number of its group for every shell, freed with PyMem_Free(); NULL with an exception. */
+static uint32_t *number_groups(PyObject *groups, Py_ssize_t count, size_t shells)
+{
+    uint32_t *group_of = PyMem_Malloc((shells + 1) * sizeof *group_of);
+    if (!group_of) PyErr_NoMemory();
+    for (size_t s = 0; group_of && s < shells; s++) group_of[s] = UINT32_MAX;
+    for (Py_ssize_t g = 0; group_of && g < count; g++) {
+        PyObject *group = PySequence_GetItem(groups, g);
+        if (number_group(group, (uint32_t)g, shells, group_of)) {
+            PyMem_Free(group_of);
+            group_of = NULL;
+        }
+        Py_XDECREF(group);
+    }
+    return group_of;
+}
+
+/** A tuple of Meshes that takes over `count` handles, also on failure. */
+static PyObject *mesh_tuple(PyTypeObject *type, swarf_mesh *const *handles, Py_ssize_t count)
+{
+    PyObject *result = PyTuple_New(count);
+    for (Py_ssize_t i = 0; i < count; i++) {
+        PyObject *mesh = mesh_wrap(type, handles[i]);
+        if (!result)
+            Py_XDECREF(mesh);
+        else if (!mesh || PyTuple_SetItem(result, i, mesh))
+            Py_CLEAR(result);
+    }
+    return result;
+}
+
+PyObject *mesh_split_shells(PyObject *self, PyObject *args, PyObject *keywords)
+{
+    static char *names[] = {"groups", "progress", NULL};
+    PyObject *groups, *progress = NULL, *result = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|$O:split_shells", names, &groups, &progress)) return NULL;
+    const Py_ssize_t count = PySequence_Size(groups);
+    swarf_measures *measures = count < 0 ? NULL : measures_of(self);
+    if (!measures) return NULL;
+    size_t shells;
+    swarf_measures_shells(measures, &shells);
+    swarf_mesh **made = PyMem_Malloc(((size_t)count + 1) * sizeof(swarf_mesh *));
+    if (!made) PyErr_NoMemory();
+    uint32_t *group_of = made ? number_groups(groups, count, shells) : NULL;
+    native_call call;
+    if (group_of && !call_begin(&call, progress)) {
+        const swarf_status status =
+            swarf_mesh_create_groups(handle_of(self), measures, group_of, (size_t)count, &call.progress, made);
+        if (!call_end(&call, state_of(self), status)) result = mesh_tuple(Py_TYPE(self), made, count);
+    }
+    PyMem_Free(group_of);
+    PyMem_Free(made);
+    swarf_measures_destroy(measures);
     return result;
 }
 

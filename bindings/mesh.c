@@ -323,6 +323,7 @@ static PyMethodDef mesh_methods[] = {
     {"measure", mesh_measure, METH_NOARGS, mesh_measure_doc},
     {"shells", mesh_shells, METH_NOARGS, mesh_shells_doc},
     {"keep_shells", mesh_keep_shells, METH_O, mesh_keep_shells_doc},
+    {"split_shells", WITH_KEYWORDS(mesh_split_shells), METH_VARARGS | METH_KEYWORDS, mesh_split_shells_doc},
     {"split", WITH_KEYWORDS(mesh_split), METH_VARARGS | METH_KEYWORDS, mesh_split_doc},
     {"thickness", WITH_KEYWORDS(mesh_thickness), METH_VARARGS | METH_KEYWORDS, mesh_thickness_doc},
     {"placed", mesh_placed, METH_O, mesh_placed_doc},

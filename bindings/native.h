@@ -245,11 +245,12 @@ PyObject *mesh_wrap(PyTypeObject *type, swarf_mesh *handle);
 /* ---- measures.c: methods of Mesh ---- */
 
 extern PyStructSequence_Desc shell_desc, contour_desc;
-extern const char mesh_measure_doc[], mesh_shells_doc[], mesh_keep_shells_doc[], mesh_section_doc[], mesh_split_doc[],
-    mesh_thickness_doc[];
+extern const char mesh_measure_doc[], mesh_shells_doc[], mesh_keep_shells_doc[], mesh_split_shells_doc[],
+    mesh_section_doc[], mesh_split_doc[], mesh_thickness_doc[];
 PyObject *mesh_measure(PyObject *self, PyObject *none);
 PyObject *mesh_shells(PyObject *self, PyObject *none);
 PyObject *mesh_keep_shells(PyObject *self, PyObject *list);
+PyObject *mesh_split_shells(PyObject *self, PyObject *args, PyObject *keywords);
 PyObject *mesh_section(PyObject *self, PyObject *args, PyObject *keywords);
 PyObject *mesh_split(PyObject *self, PyObject *args, PyObject *keywords);
 PyObject *mesh_thickness(PyObject *self, PyObject *args, PyObject *keywords);

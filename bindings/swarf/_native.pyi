@@ -728,6 +728,9 @@ class Mesh:
         """Tuple of a Shell per piece that hangs together by its edges."""
     def keep_shells(self, shells: Sequence[int], /) -> Mesh:
         """A Mesh of these shells alone, by their places in shells()."""
+    def split_shells(self, groups: Sequence[Sequence[int]], *, progress: Progress = None) -> tuple[Mesh, ...]:
+        """A tuple of a Mesh per group of shells, each group a sequence of their places in shells(); a shell is in one
+        group at most. All are made in one pass: many take no longer than few."""
     def split(self, point: Point, normal: Point) -> tuple[Mesh, Mesh]:
         """The closed mesh cut by the plane through ``point``: (what lies against ``normal``, what lies along it), two
         closed Meshes with caps, empty where there is nothing. GeometryError: the mesh is open."""

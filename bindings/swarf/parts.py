@@ -6,7 +6,7 @@ import math
 from typing import Any, Callable, Optional, Protocol, Sequence
 
 from ._native import GeometryError, Mesh, Solid, Surface
-from .progress import Report
+from .progress import Report, check, share
 from .records import rows
 from .vectors import Vector, add, cross, middle
 
@@ -39,9 +39,9 @@ def _place_on(mesh: Mesh) -> Vector:
     return middle(*max(corners, key=lambda one: math.hypot(*cross(add(one[1], one[0], -1), add(one[2], one[0], -1)))))
 
 
-def pieces(shells: Sequence[Closed], mesh_of: Callable[[int], Mesh]) -> list[list[int]]:
+def pieces(shells: Sequence[Closed], mesh_of: Callable[[int], Mesh], progress: Report = None) -> list[list[int]]:
     """Places of the shells of each piece, the largest piece first; a hollow belongs to the innermost solid round it.
-    ``mesh_of``: a shell by its place, asked of hollows and what may be round them."""
+    ``mesh_of``: a shell by its place, asked of hollows and what may be round them. Cancelled."""
     solids = sorted((i for i, shell in enumerate(shells) if shell.volume_mm3 > 0), key=lambda i: -shells[i].volume_mm3)
     found = {i: [i] for i in solids}
     known: dict[int, Optional[Solid]] = {}
@@ -56,6 +56,7 @@ def pieces(shells: Sequence[Closed], mesh_of: Callable[[int], Mesh]) -> list[lis
         return told is None or told.distance([place])[0] < 0
 
     for i, shell in enumerate(shells):
+        check(progress, i / len(shells))
         round_it = [s for s in solids if _box_contains(shells[s], shell)] if shell.volume_mm3 <= 0 else []
         if round_it:
             place = _place_on(mesh_of(i))
@@ -65,9 +66,22 @@ def pieces(shells: Sequence[Closed], mesh_of: Callable[[int], Mesh]) -> list[lis
     return [found[i] for i in solids]
 
 
-def pieces_of(mesh: Mesh) -> list[list[int]]:
+def pieces_of(mesh: Mesh, progress: Report = None) -> list[list[int]]:
     """Places in mesh.shells() of the shells of each piece, as pieces()."""
-    return pieces(mesh.shells(), lambda shell: mesh.keep_shells([shell]))
+    shells = mesh.shells()
+    made: list[Mesh] = []
+
+    def mesh_of(shell: int) -> Mesh:
+        if not made:  # all in one pass
+            made.extend(mesh.split_shells([[place] for place in range(len(shells))]))
+        return made[shell]
+
+    return pieces(shells, mesh_of, progress)
+
+
+def split_pieces(mesh: Mesh, progress: Report = None) -> tuple[Mesh, ...]:
+    """A mesh per piece, as pieces_of() tells them. Cancelled."""
+    return mesh.split_shells(pieces_of(mesh, share(progress, 0, 0.5)), progress=share(progress, 0.5, 1))
 
 
 def largest(mesh: Mesh) -> Mesh:

@@ -86,6 +86,26 @@ def test_loose_pieces(mesh):
         mesh.keep_shells(["a"])
 
 
+def test_shells_in_groups(mesh):
+    told = []
+    for group, alone in zip(mesh.split_shells([[1], [], (0,)], progress=told.append), ([1], [], [0])):
+        wanted = mesh.keep_shells(alone)
+        assert group.vertices.tolist() == wanted.vertices.tolist()
+        assert group.triangles.tolist() == wanted.triangles.tolist()
+    assert told == [0, 1 / 3, 2 / 3, 1]
+    assert mesh.split_shells([]) == ()
+    (both,) = mesh.split_shells([[1, 0]])
+    assert both.triangle_count == mesh.triangle_count
+    for groups, match in (([[2]], "shell 2 of 2"), ([[0], [1, 0]], "shell 0 is in two"), ([[-1]], "not the place")):
+        with pytest.raises(ValueError, match=match):
+            mesh.split_shells(groups)
+    for groups in ([["a"]], [3], 3):
+        with pytest.raises(TypeError):
+            mesh.split_shells(groups)
+    with pytest.raises(swarf.Cancelled):
+        mesh.split_shells([[0], [1]], progress=lambda done: done == 0.5)
+
+
 def test_section(mesh):
     lines = mesh.section((0, 0, -3.03), (0, 0, 1))
     assert len(lines) == 2

@@ -48,6 +48,41 @@ def fixture_done(job):
     return swarf.simulate(job, voxel=VOXEL)
 
 
+def boxes(count, hollow=False):
+    """Cubes of 2 mm in a row; each with a hollow in it."""
+    corners, triangles = [], []
+    for number in range(count):
+        for size, turned in ((2.0, False), (1.0, True))[:1 + hollow]:
+            lo, first = (3 * number + 1 - size / 2, 1 - size / 2, 1 - size / 2), len(corners)
+            corners += [tuple(low + size * (place >> axis & 1) for axis, low in enumerate(lo)) for place in range(8)]
+            for a, b, c in ((0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7),
+                            (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)):
+                triangles.append(tuple(first + corner for corner in ((a, c, b) if turned else (a, b, c))))
+    return swarf.Mesh(corners, triangles)
+
+
+def test_pieces_are_made_in_one_pass():
+    """Not one by one, which takes the whole mesh for each."""
+    class Counting:
+        """A mesh whose shells are asked for so many times."""
+        def __init__(self, mesh):
+            self.shells, self.mesh, self.asked = mesh.shells, mesh, 0
+
+        def split_shells(self, groups, progress=None):
+            self.asked += 1
+            return self.mesh.split_shells(groups, progress=progress)
+
+    mesh = Counting(boxes(20, hollow=True))
+    told = []
+    made = parts.split_pieces(mesh, told.append)
+    assert [piece.volume for piece in made] == pytest.approx([7.0] * 20)
+    assert len({piece.bounding_box for piece in made}) == 20
+    assert mesh.asked == 2 and told == sorted(told) and told[-1] == 1
+    for last in (0.25, 0.75):
+        with pytest.raises(swarf.Cancelled):
+            parts.split_pieces(boxes(20), lambda done: done >= last)
+
+
 def test_split(done, tmp_path, capsys):
     below, above = done.mesh.split((0, 0, -3), (0, 0, 1))  # at the groove's floor, of which nothing is left
     assert below.closed and above.closed

@@ -10,7 +10,7 @@ from typing import Any, Optional
 from .. import _native, colours, drawing, meshing, solids
 from ..console import DONE, FINDINGS, check_outputs, say, tell
 from ..files import naming
-from ..parts import PLANE_HELP, parse_plane, pieces_of, thinnest
+from ..parts import PLANE_HELP, parse_plane, split_pieces, thinnest
 from ..progress import Bar
 from ..simulate import MESH_SUFFIXES, check_coloured, check_mesh, mesh_error, streams
 
@@ -74,7 +74,7 @@ def parts_of(mesh: _native.Mesh, arguments: argparse.Namespace) -> list[_native.
     for point, normal in arguments.split_at:
         parts = [side for part in parts for side in part.split(point, normal) if side.triangle_count]
     if arguments.split:
-        parts = [part.keep_shells(piece) for part in parts for piece in pieces_of(part)]
+        parts = [piece for part in parts for piece in split_pieces(part)]
     return parts
 
 

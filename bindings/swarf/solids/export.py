@@ -69,14 +69,15 @@ def facets(mesh: Mesh, progress: Report = None) -> brep.Brep:
         raise ValueError(f"{mesh.triangle_count} triangles are too many for facets, of which {FACETS_MAX} are written "
                          "at most")
     made = brep.Brep([], [], [], [], [], 0.0)
-    solids, count = pieces_of(mesh), len(mesh.shells())
-    if sum(map(len, solids)) != count:
+    solids = pieces_of(mesh)
+    order = [shell for solid in solids for shell in solid]
+    if len(order) != len(mesh.shells()):
         raise ValueError(Said("hollow"))
+    shells = mesh.split_shells([[shell] for shell in order]) if len(order) > 1 else (mesh,)
     for solid in solids:
-        made.solids.append([])
-        for shell in solid:
-            made.solids[-1].append(len(made.shells))
-            _add(made, mesh.keep_shells([shell]) if count > 1 else mesh)
+        made.solids.append(list(range(len(made.shells), len(made.shells) + len(solid))))
+        for _ in solid:
+            _add(made, shells[len(made.shells)])
             check(progress, len(made.faces) / mesh.triangle_count)
     return made
 

@@ -41,10 +41,10 @@ class Body:
         sides = self.mesh.split(tuple(point), tuple(normal))
         if not all(side.triangle_count for side in sides):
             raise JobError("the plane does not cut what is left of the stock")
-        found = [side.keep_shells(shells) for side in sides for shells in native.pieces_of(side)] if each else sides
+        found = native.split_pieces(sides, native.share(progress, 0, 0.5)) if each else sides
         files = []
         for number, part in enumerate(found):
-            if progress is not None and progress(number / len(found)):
+            if progress is not None and progress(0.5 + 0.5 * number / len(found)):
                 raise native.load().Cancelled("cancelled")
             self._count += 1
             files.append(self._file("part-%d.ply" % self._count))

@@ -136,9 +136,17 @@ def pieces(shells, triangles_of):
     return _package("parts").pieces(shells, lambda place: mesh(*triangles_of(place)))
 
 
-def pieces_of(mesh):
-    """Places in mesh.shells() of the shells of each piece, its cavities behind it."""
-    return _package("parts").pieces_of(mesh)
+def share(progress, begin, end):
+    """The progress of a part of the work, from begin to end of the whole."""
+    return _package("progress").share(progress, begin, end)
+
+
+def split_pieces(meshes, progress=None):
+    """swarf.Meshes of each piece of some, its cavities with it. swarf.Cancelled."""
+    made = []
+    for number, mesh in enumerate(meshes):
+        made += _package("parts").split_pieces(mesh, share(progress, number / len(meshes), (number + 1) / len(meshes)))
+    return made
 
 
 def thinnest(mesh, progress=None):

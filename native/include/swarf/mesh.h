@@ -157,6 +157,11 @@ SWARF_API const uint32_t *swarf_measures_shell_of(const swarf_measures *measures
 /** A mesh of some of the shells of `mesh`, of which `measures` was made. SWARF_ERROR_ARGUMENT: no such shell. */
 SWARF_API swarf_status swarf_mesh_create_shells(const swarf_mesh *mesh, const swarf_measures *measures,
                                                 const uint32_t *shells, size_t count, swarf_mesh **out);
+/** Meshes of `count` groups of its shells, in one pass over it. `group_of`: the number of its group for every shell,
+ *  `count` or more: in none. `out`: `count` meshes, the caller's; empty where a group has no shells. */
+SWARF_API swarf_status swarf_mesh_create_groups(const swarf_mesh *mesh, const swarf_measures *measures,
+                                                const uint32_t *group_of, size_t count, const swarf_progress *progress,
+                                                swarf_mesh **out);
 
 /** Cut a closed mesh by a plane into what lies against `normal` (below) and along it (above), each closed by caps; a
  *  side without material becomes an empty mesh. Volumes add up, but for the rounding of new vertices to floats.

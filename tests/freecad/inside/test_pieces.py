@@ -2,6 +2,7 @@
 """What is left of the stock split and measured, against closed forms, and what comes of it in the document."""
 
 import math
+import os
 import unittest
 
 import FreeCAD
@@ -23,6 +24,16 @@ def values_of(table, key, axis=""):
     """Of a row of a table."""
     (row,) = [row for row in table.rows if row[:2] == (key, axis)]
     return row[3]
+
+
+def row_of_boxes(count):
+    """Mesh of boxes beside each other, each a mm higher than the one before."""
+    mesh = Mesh.Mesh()
+    for number in range(count):
+        box = Mesh.createBox(1.0, 1.0, 1.0 + number)
+        box.translate(3.0 * number, 0, 0)
+        mesh.addMesh(box)
+    return mesh
 
 
 class TestPieces(unittest.TestCase):
@@ -61,6 +72,16 @@ class TestPieces(unittest.TestCase):
             pieces.split(self.obj, (0, 0, -1), (0, 0, 1), True, lambda done: told.append(done) or len(told) > 1)
         self.assertEqual((len(told), self.document.UndoCount, self.obj.Visibility), (2, 0, True))
 
+    def test_who_splits_can_cancel_while_pieces_are_made(self):
+        body = Body(row_of_boxes(30).write)
+        told = []
+        with self.assertRaises(native.load().Cancelled):
+            body.split((0, 0, 0), (0, 0, 1), True, lambda done: told.append(done) or len(told) > 20)
+        self.assertEqual(os.listdir(body._folder.name), ["body.ply"])
+        told.clear()
+        self.assertEqual(len(body.split((0, 0, 0), (0, 0, 1), True, told.append)), 60)
+        self.assertEqual(told, sorted(told))
+
     def test_measures(self):
         told = []
         with telling.every_piece():
@@ -80,7 +101,8 @@ class TestPieces(unittest.TestCase):
                 self.assertAlmostEqual(value, wanted, delta=1e-4 * max(abs(wanted), 1), msg=key)
         for place, axis in enumerate("XYZ", 1):
             self.assertAlmostEqual(abs(values_of(table, "axis", "%d%s" % (place, axis))[0]), 1, places=9)
-        zeros = [("inertia", "XY"), ("inertia", "XZ"), ("inertia", "YZ"), ("axis", "1Y"), ("axis", "2X"), ("axis", "3Y")]
+        zeros = [("inertia", "XY"), ("inertia", "XZ"), ("inertia", "YZ"),
+                 ("axis", "1Y"), ("axis", "2X"), ("axis", "3Y")]
         self.assertEqual([values_of(table, *row)[0] for row in zeros], [0.0] * len(zeros))
         wall, beside = values_of(table, "wall")
         self.assertAlmostEqual(wall, 7, delta=1e-3)
@@ -108,12 +130,7 @@ class TestPieces(unittest.TestCase):
         self.assertEqual(values_of(Body(mesh.write).measures(), "genus")[:2], [None, None])
 
     def test_only_the_largest_shells_are_listed(self):
-        mesh = Mesh.Mesh()
-        for number in range(measures.MOST_SHELLS + 3):
-            box = Mesh.createBox(1.0, 1.0, 1.0 + number)
-            box.translate(3.0 * number, 0, 0)
-            mesh.addMesh(box)
-        table = Body(mesh.write).measures()
+        table = Body(row_of_boxes(measures.MOST_SHELLS + 3).write).measures()
         self.assertEqual((len(table.columns), table.more), (measures.MOST_SHELLS + 1, 3))
         self.assertAlmostEqual(values_of(table, "volume")[1], measures.MOST_SHELLS + 3, places=3)
         self.assertAlmostEqual(values_of(table, "volume")[-1], 4, places=3)
