@@ -82,6 +82,37 @@ def check_colours(obj, picture):
     obj.Document.recompute()
 
 
+def close_at_work(opened, start):
+    """A panel that is closed by others while its thread works: nothing raises, nothing stays."""
+    start()
+    wait_for(lambda: opened.worker is not None, "the thread")
+    folder = getattr(opened, "folder", None)
+    close_panel()
+    wait_for(lambda: opened.closed, "the panel's end")
+    opened.show_progress(0.5)
+    wait_for(lambda: not opened.working, "the thread's end")
+    assert folder is None or not os.path.exists(folder.name), "a temporary folder stays"
+
+
+def check_closed(job, obj):
+    """Panels of all kinds closed by others."""
+    from freecad.swarf_cam.gui import exporting, measuring, splitting
+    from freecad.swarf_cam.gui import task as panel
+
+    undo, path = obj.Document.UndoCount, os.path.join(OUT, "closed.ply")
+    opened = panel.show_panel(job)
+    opened.voxel.setValue(0.1)
+    close_at_work(opened, opened.accept)
+    opened = exporting.show_panel(obj)
+    close_at_work(opened, lambda: opened.start(path))
+    opened = splitting.show_panel(obj)
+    opened.each.setChecked(True)
+    close_at_work(opened, opened.accept)
+    opened = measuring.show_panel(obj)
+    close_at_work(opened, lambda: None)
+    assert obj.Document.UndoCount == undo
+
+
 def check_budget(opened):
     """Of the export panel: where it can be asked for, what is said of it and where it cannot be met."""
     opened.budget.setValue(5)
@@ -397,6 +428,7 @@ def check():
     check_section(obj)
     check_split(obj)
     check_measure(obj)
+    check_closed(job, obj)
     check_gone(samples, simulation)
     check_next(document, obj)
 

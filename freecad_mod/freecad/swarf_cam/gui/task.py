@@ -148,8 +148,12 @@ class SimulationPanel(TaskPanel):
         if error is not None:
             self.fail(error)
             return
+        try:
+            self.folder = tempfile.TemporaryDirectory(prefix="swarf-")
+        except OSError as problem:
+            self.fail(problem)
+            return
         self.prepared = prepared
-        self.folder = tempfile.TemporaryDirectory(prefix="swarf-")
         self.bar.setRange(0, 1000)
         folder = self.folder.name
         self.worker = Worker(lambda progress: prepared.run(folder, progress), self.show_progress, self.on_end)
@@ -158,16 +162,16 @@ class SimulationPanel(TaskPanel):
     def end(self, text):
         """Ready to begin again."""
         super().end(text)
-        self.voxel.setEnabled(True)
+        if not self.closed:
+            self.voxel.setEnabled(True)
 
     def on_end(self, result, error):
         """The thread is through, with a result or an error."""
         cancelled = self.worker.cancelled
         self.worker = None
-        self.end("")
         try:
             if cancelled:  # even where nothing was left to break off
-                self.message.setText(translate("Swarf", "Cancelled; nothing was changed."))
+                self.end(translate("Swarf", "Cancelled; nothing was changed."))
             elif error is not None:
                 self.fail(error)
             else:

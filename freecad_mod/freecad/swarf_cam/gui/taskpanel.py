@@ -38,9 +38,10 @@ class TaskPanel:
         raise NotImplementedError
 
     def end(self, text):
-        """Ready to begin again, with something to say."""
-        self.bar.hide()
-        self.message.setText(text)
+        """Ready to begin again, with something to say; no one is told once the panel is closed."""
+        if not self.closed:
+            self.bar.hide()
+            self.message.setText(text)
 
     def getStandardButtons(self):
         """OK and Cancel."""
@@ -73,7 +74,8 @@ class TaskPanel:
 
     def show_progress(self, fraction):
         """Fraction done."""
-        self.bar.setValue(int(1000 * fraction))
+        if not self.closed:
+            self.bar.setValue(int(1000 * fraction))
 
     def gone(self, *_):
         """The widgets are no more, whoever closed the dialog."""
