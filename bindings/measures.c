@@ -274,7 +274,9 @@ PyObject *mesh_split_shells(PyObject *self, PyObject *args, PyObject *keywords)
 const char mesh_section_doc[] =
     "section($self, point, normal)\n--\n\n"
     "Where the plane through ``point`` cuts the mesh: a tuple of polylines, each a tuple of (x, y, z) in mm, material\n"
-    "on the left seen against ``normal``. In a closed mesh each goes on from its last point to its first.";
+    "on the left seen against ``normal``. In a closed mesh each goes on from its last point to its first. Of a face "
+    "that\n"
+    "lies in the plane what is just below counts, or just above where nothing is below.";
 
 PyObject *mesh_section(PyObject *self, PyObject *args, PyObject *keywords)
 {

@@ -29,7 +29,7 @@ def make_parser(commands: dict[str, ModuleType]) -> Parser:
 def check_words(words: Sequence[str]) -> None:
     """ValueError for a file or a value without a letter, as of a script's variable that was never set."""
     for before, word in zip(("swarf", *words), words):
-        if not word or (word.startswith("--") and word.endswith("=")):
+        if not word or (word.startswith("--") and word.find("=") == len(word) - 1):
             raise ValueError(f"nothing stands after {before if not word else word}: a name or a value is wanted there")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Section curves as drawings in mm: SVG, and DXF as of AutoCAD R12, which all that reads DXF can read."""
+"""Section curves as drawings in mm: SVG, and DXF as of AutoCAD R12, the oldest that readers know."""
 from __future__ import annotations
 
 from typing import Iterable, Sequence
@@ -16,15 +16,21 @@ Point = tuple[float, float]
 #: Width of lines in a picture, of its longer edge.
 STROKE = 1 / 500
 
+#: Of a unit normal, what rounding makes of nought.
+ROUNDED = 1e-9
+
+#: Layer of the curves. Not 0: FreeCAD's reader takes it for the code that begins the next entity, and misses that.
+LAYER = "SECTION"
+
 
 def flat(curves: Iterable[Sequence[Vector]], point: Vector, normal: Vector) -> list[list[Point]]:
     """Curves of a plane across an axis as the two other coordinates, in their order; of any other one as it is seen
     against the normal, ``point`` at the origin, to the right what is horizontal."""
-    across = [axis for axis in range(3) if normal[axis] != 0]
+    upwards = unit(normal)
+    across = [axis for axis in range(3) if abs(upwards[axis]) > ROUNDED]
     if len(across) == 1:
         first, second = (axis for axis in range(3) if axis not in across)
         return [[(corner[first], corner[second]) for corner in curve] for curve in curves]
-    upwards = unit(normal)
     right = unit(cross((0.0, 0.0, 1.0), upwards))
     up = cross(upwards, right)
     return [[(dot(place, right), dot(place, up)) for place in (add(corner, point, -1) for corner in curve)]
@@ -53,13 +59,13 @@ def _svg(curves: Sequence[Sequence[Point]]) -> str:
 
 
 def _dxf(curves: Sequence[Sequence[Point]]) -> str:
-    """Each curve a closed POLYLINE on layer 0; pairs of a group's code and its value."""
+    """Each curve a closed POLYLINE on the layer; pairs of a group's code and its value."""
     pairs: list[tuple[int, object]] = [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (0, "ENDSEC"),
                                        (0, "SECTION"), (2, "ENTITIES")]
     for curve in curves:
-        pairs += [(0, "POLYLINE"), (8, 0), (66, 1), (70, 1), (10, _number(0)), (20, _number(0)), (30, _number(0))]
+        pairs += [(0, "POLYLINE"), (8, LAYER), (66, 1), (70, 1), (10, _number(0)), (20, _number(0)), (30, _number(0))]
         for x, y in curve:
-            pairs += [(0, "VERTEX"), (8, 0), (10, _number(x)), (20, _number(y)), (30, _number(0))]
-        pairs += [(0, "SEQEND"), (8, 0)]
+            pairs += [(0, "VERTEX"), (8, LAYER), (10, _number(x)), (20, _number(y)), (30, _number(0))]
+        pairs += [(0, "SEQEND"), (8, LAYER)]
     pairs += [(0, "ENDSEC"), (0, "EOF")]
     return "".join(f"{code}\n{value}\n" for code, value in pairs)

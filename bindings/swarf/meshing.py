@@ -35,7 +35,7 @@ def check_meant(arguments: argparse.Namespace, made: bool, of_error: bool) -> No
         ("--error", arguments.error is not None, made or of_error), ("--budget", arguments.budget, made),
         ("--fine", arguments.fine, made), ("--keep-volume", arguments.keep_volume, made)) if value and not meant]
     if given:
-        raise ValueError(f"{' and '.join(given)}: no mesh is made; give --output with {', '.join(MESH_SUFFIXES)} "
+        raise ValueError(f"{' and '.join(given)}: nothing that is made heeds it; give --output with {', '.join(MESH_SUFFIXES)} "
                          "or --report")
 
 

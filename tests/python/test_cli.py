@@ -326,6 +326,7 @@ def test_errors_name_the_file_or_the_word_and_what_would_be_right(tmp_path, prog
             (["mesh", part, "--output", ""], "nothing stands after --output: "),
             (["simulate", *cut, "--then", ""], "nothing stands after --then: "),
             (["simulate", *cut, "--output="], "nothing stands after --output=: "),
+            (["mesh", part, "--output=a="], "a=: unknown suffix"),
             ([*held, "--allowance", "1e300"], "an allowance of 1e+300 mm; -1e+06 to 1e+06 are possible"),
             ([*held, "--tolerance", "1e300"], "a tolerance of 1e+300 mm"),
             ([*held, "--clearance", "1e300"], "a clearance of 1e+300 mm; 0 to 1000 are possible"),
@@ -587,11 +588,11 @@ def test_errors_and_budgets_that_cannot_be(refused, program, words, says):
 
 
 @pytest.mark.parametrize("words, says", [
-    (("--fine",), "--fine: no mesh is made; give --output with .stl, .ply"),
-    (("--keep-volume", "--output", "s.vdb"), "--keep-volume: no mesh is made"),
-    (("--error", "0.1", "--picture", "s.png"), "--error: no mesh is made"),
-    (("--error", "0.1", "--budget", "9"), "--error and --budget: no mesh is made"),
-    (("--error", "0.1", "--budget", "9", "--output", "s.step"), "error: --budget: no mesh is made"),
+    (("--fine",), "--fine: nothing that is made heeds it; give --output with .stl, .ply"),
+    (("--keep-volume", "--output", "s.vdb"), "--keep-volume: nothing that is made heeds it"),
+    (("--error", "0.1", "--picture", "s.png"), "--error: nothing that is made heeds it"),
+    (("--error", "0.1", "--budget", "9"), "--error and --budget: nothing that is made heeds it"),
+    (("--error", "0.1", "--budget", "9", "--output", "s.step"), "error: --budget: nothing that is made heeds it"),
 ])
 def test_options_of_meshes_without_one_are_refused(refused, program, words, says):
     refused(program, "--stock", STOCK, "--tool", TOOL, "--voxel", "0.005", *words, says=[says])

@@ -174,6 +174,10 @@ def test_sections(suffix, tmp_path, capsys):
     assert main([*words, "--section", "z=5", "--section", "z=9", "--output", str(tmp_path / f"none{suffix}")]) == 2
     assert "hollow.ply: section 2 does not cut it" in capsys.readouterr().err
     assert not list(tmp_path.glob("none*"))
+    # along its faces, corners alone; across z but for rounding, as across z
+    for plane in ("z=4", "z=7", "0,0,7,1e-17,0,1"):
+        assert main([*words, "--section", plane, "--output", str(drawn)]) == 0
+        assert [sorted(curve) for curve in curves_of(drawn)] == [[(2, 3), (2, 8), (12, 3), (12, 8)]]
     assert swarf.Mesh.read(tmp_path / "copy.stl").volume == pytest.approx(hollow.volume)
 
 

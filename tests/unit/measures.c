@@ -207,23 +207,42 @@ static void check_sections(void)
     CHECK_FAILS(swarf_outline_create(mesh, low, centre, &section), SWARF_ERROR_ARGUMENT, "no length");
     swarf_mesh_release(mesh);
 
-    /* through vertices and along a face of a box; and an open mesh, whose outline has ends */
-    const double lo[3] = {0, 0, 0}, hi[3] = {2, 3, 4}, middle[3] = {0, 0, 2}, bottom[3] = {0, 0, 0};
+    /* through the middle of a box, along its faces, beside one by less than points are apart */
+    const double lo[3] = {0, 0, 0}, hi[3] = {2, 3, 4};
+    static const double heights[] = {2, 0, 4, 4 - 1e-7};
     shape box = {0};
     shape_box(&box, lo, hi);
     box.triangles = 12;
     mesh = shape_mesh(&box);
-    for (int i = 0; i < 2; i++) {
-        if (!CHECK_OK(swarf_outline_create(mesh, i ? bottom : middle, up, &section))) continue;
+    for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
+        const double point[3] = {0, 0, heights[i]};
+        if (!CHECK_OK(swarf_outline_create(mesh, point, up, &section))) continue;
         size_t count = 0;
-        CHECK(swarf_outline_count(section) == (i ? 0 : 1));
-        if (!i) {
+        if (CHECK(swarf_outline_count(section) == 1)) {
             const double *p = swarf_outline_polyline(section, 0, &count);
-            CHECK_NEAR(area_of(p, count), 6, 1e-9);
+            CHECK_NEAR(area_of(p, count), 6, 1e-6);
+            CHECK(count == (heights[i] == 2 ? 8 : 4)); /* where it passes edges, corners */
         }
         swarf_outline_destroy(section);
     }
     swarf_mesh_release(mesh);
+
+    /* through the ridge of a roof and the tip of a pyramid, of which nothing is above; both below them */
+    static const float roof[2][18] = {{0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0, 0, 2, 3, 4, 2, 3},
+                                      {0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0, 2, 2, 3, 2, 2, 3}};
+    static const uint32_t sides[] = {0, 2, 1, 0, 3, 2, 0, 1, 5, 0, 5, 4, 2, 3, 4, 2, 4, 5, 1, 2, 5, 3, 0, 4};
+    for (int i = 0; i < 4; i++) {
+        const swarf_triangles of = {roof[i & 1], 6, sides, 8};
+        const double point[3] = {0, 0, i < 2 ? 3 : 1.5};
+        if (!CHECK_OK(swarf_mesh_create(&of, &mesh))) continue;
+        if (CHECK_OK(swarf_outline_create(mesh, point, up, &section))) {
+            CHECK(swarf_outline_count(section) == (i < 2 ? 0 : 1));
+            swarf_outline_destroy(section);
+        }
+        swarf_mesh_release(mesh);
+    }
+
+    /* an open mesh, whose outline has ends */
     static const float xyz[] = {0, 0, 0, 1, 0, 0, 0, 0, 1};
     static const uint32_t index[] = {0, 1, 2};
     const swarf_triangles one = {xyz, 3, index, 1};

@@ -109,7 +109,8 @@ def draw(mesh: _native.Mesh, arguments: argparse.Namespace) -> list[tuple[str, l
     for number, (point, normal) in enumerate(arguments.section, 1):
         curves = drawing.flat(mesh.section(point, normal), point, normal)
         if not curves:
-            raise ValueError(f"{arguments.input}: section {number} does not cut it")
+            which = f"section {number}" if len(arguments.section) > 1 else "the section"
+            raise ValueError(f"{arguments.input}: {which} does not cut it")
         drawn += [(numbered(path, number) if len(arguments.section) > 1 else path, curves) for path in outputs]
     return drawn
 

@@ -177,7 +177,9 @@ SWARF_API swarf_status swarf_mesh_thickness(const swarf_mesh *mesh, const swarf_
 
 /** The curves along which a plane cuts a mesh, as polylines. Owned by the caller; immutable. */
 typedef struct swarf_outline swarf_outline;
-/** Material on the left seen against `normal`. SWARF_ERROR_ARGUMENT: NULL, not finite, no normal. */
+/** Material on the left seen against `normal`. Of a face that lies in the plane what is just below counts, or just
+ * above where nothing is below; no two points in a row are closer than 1e-6 mm, and no closed curve is without area.
+ *  SWARF_ERROR_ARGUMENT: NULL, not finite, no normal. */
 SWARF_API swarf_status swarf_outline_create(const swarf_mesh *mesh, const double point[3], const double normal[3],
                                             swarf_outline **out);
 /** NULL is legal. */

@@ -14,7 +14,7 @@ import Part
 import samples
 import telling
 from freecad.swarf_cam import native
-from freecad.swarf_cam.app import fixtures, model, simulation
+from freecad.swarf_cam.app import fixtures, model, pieces, simulation
 from freecad.swarf_cam.core import steps
 from freecad.swarf_cam.core.errors import JobError
 
@@ -256,6 +256,22 @@ class TestModel(unittest.TestCase):
         self.assertAlmostEqual(sum(edge.Length for edge in read.Edges), 4 * 40 + 4 * 7, delta=0.01)
         self.assertEqual([round(getattr(read.BoundBox, name), 3) for name in ("XMin", "XMax", "YMin", "YMax")],
                          [0, 40, 0, 20])
+
+    def test_drawing_of_two_curves(self):
+        """What `swarf mesh --section` writes, read by FreeCAD: all curves, closed."""
+        import Import
+
+        plane = ((0, 0, -1), (0, 0, 1))
+        curves = pieces.body_of(self.obj).section(*plane)
+        drawing = importlib.import_module("swarf.drawing")
+        drawing.write(drawing.flat(curves, *plane), self.path("two.dxf"))
+        other = samples.new_document(self, "two")
+        Import.readDXF(self.path("two.dxf"), other.Name)
+        other.recompute()
+        read = Part.makeCompound([obj.Shape for obj in other.Objects if hasattr(obj, "Shape")])
+        wires = [Part.Wire(edges) for edges in Part.sortEdges(read.Edges)]
+        self.assertEqual([wire.isClosed() for wire in wires], [True, True])
+        self.assertAlmostEqual(sum(Part.Face(wire).Area for wire in wires), 2 * 40 * 7, delta=0.01)
 
     def test_estimates(self):
         for suffix in (".stl", ".ply", ".glb"):

@@ -271,9 +271,7 @@ def section(obj, point, normal, curves=None):
     wires = []
     for line in pieces.body_of(obj).section(point, normal) if curves is None else curves:
         corners = [FreeCAD.Vector(*corner) for corner in line]
-        kept = [corner for index, corner in enumerate(corners) if (corner - corners[index - 1]).Length > 1e-6]
-        if len(kept) > 2:
-            wires.append(Part.makePolygon(kept + kept[:1]))
+        wires.append(Part.makePolygon(corners + corners[:1]))
     if not wires:
         raise JobError("the plane does not cut what is left in '%s'" % obj.Label)
     return Part.makeCompound(wires)
