@@ -10,38 +10,51 @@ from .core import measures
 from .core.errors import JobError
 
 
+# Of a file that cannot be handed over, and why.
+NO_PLACE = "the stock needs room in the folder of temporary files: %s"
+
+
 class Body:
     """A closed mesh, handed over as a .ply file by write(its path) at once: numbers in Python would take ten times as
-    long. It is read when it is needed first."""
+    long. It is read when it is needed first. JobError where there is no place for the file."""
 
     def __init__(self, write):
-        self._folder = tempfile.TemporaryDirectory(prefix="swarf-")
         self._count = 0
         self._mesh = None
-        write(self._file("body.ply"))
+        try:
+            self._folder = tempfile.TemporaryDirectory(prefix="swarf-")
+            write(self._file("body.ply"))
+        except OSError as error:  # FreeCAD's own has a dictionary for a text
+            raise JobError(NO_PLACE % (error.strerror or "it cannot be written to")) from error
 
     def _file(self, name):
         return os.path.join(self._folder.name, name)
 
     @property
     def mesh(self):
-        """swarf.Mesh. OSError, swarf.Error."""
+        """swarf.Mesh. JobError."""
         if self._mesh is None:
-            self._mesh = native.load().Mesh.read(self._file("body.ply"))
+            try:
+                self._mesh = native.load().Mesh.read(self._file("body.ply"))
+            except (OSError, native.load().Error) as error:  # who wrote it does not tell that it was cut off
+                raise JobError(NO_PLACE % "it may be full") from error
         return self._mesh
 
     def section(self, point, normal):
         """Closed polylines along which a plane cuts it, of points (x, y, z)."""
         return self.mesh.section(tuple(point), tuple(normal))
 
-    def split(self, point, normal, each=False, progress=None):
+    def split(self, point, normal, each=False, progress=None, most=None):
         """Files of its parts on both sides of a plane, each closed: first what lies against the normal; or of each
-        piece of them. They live as long as the body. JobError where the plane misses it, swarf.Error where it is open,
-        swarf.Cancelled."""
+        piece of them, `most` of them at most. They live as long as the body. JobError where the plane misses it or
+        there are more, swarf.Error where it is open, swarf.Cancelled."""
         sides = self.mesh.split(tuple(point), tuple(normal))
         if not all(side.triangle_count for side in sides):
             raise JobError("the plane does not cut what is left of the stock")
         found = native.split_pieces(sides, native.share(progress, 0, 0.5)) if each else sides
+        if most is not None and len(found) > most:
+            raise JobError("these are %d pieces, of which at most %d become objects: split by the plane alone, or "
+                           "export the stock and split its file by 'swarf mesh --split'" % (len(found), most))
         files = []
         for number, part in enumerate(found):
             if progress is not None and progress(0.5 + 0.5 * number / len(found)):

@@ -3,6 +3,7 @@
 
 import math
 import os
+import tempfile
 import unittest
 
 import FreeCAD
@@ -10,7 +11,7 @@ import Mesh
 import samples
 import telling
 from freecad.swarf_cam import native
-from freecad.swarf_cam.app import pieces, simulation
+from freecad.swarf_cam.app import model, pieces, simulation
 from freecad.swarf_cam.body import Body
 from freecad.swarf_cam.core import measures
 from freecad.swarf_cam.core.errors import JobError
@@ -161,6 +162,51 @@ class TestPieces(unittest.TestCase):
         for call in (lambda: pieces.split(self.obj, (0, 0, -1), (0, 0, 1)), lambda: pieces.measure(self.obj)):
             with self.assertRaisesRegex(JobError, "nothing is left"):
                 call()
+
+    def test_a_file_that_cannot_be_handed_over(self):
+        def refuse(path):
+            raise OSError({"swhat": "No write permission for file"})
+
+        def stop_short(path):
+            self.obj.Mesh.write(path)
+            os.truncate(path, os.path.getsize(path) // 2)
+
+        for write, told in ((refuse, "cannot be written to"), (stop_short, "may be full")):
+            with self.assertRaisesRegex(JobError, "temporary files: it " + told):
+                Body(write).measures()
+        usual, tempfile.tempdir = tempfile.tempdir, os.path.join(tempfile.gettempdir(), "there", "is", "none")
+        try:
+            with self.assertRaisesRegex(JobError, "temporary files: No such file"):
+                pieces.measure(self.obj)
+        finally:
+            tempfile.tempdir = usual
+
+    def test_more_pieces_than_asked_for(self):
+        body = Body(row_of_boxes(3).write)
+        with self.assertRaisesRegex(JobError, "6 pieces, of which at most 5"):
+            body.split((0, 0, 0), (0, 0, 1), True, most=5)
+        self.assertEqual(len(body.split((0, 0, 0), (0, 0, 1), True, most=6)), 6)
+
+    def test_where_it_lies_in_a_part(self):
+        part = self.document.addObject("App::Part", "Part")
+        turned = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), 45)
+        part.Placement = FreeCAD.Placement(FreeCAD.Vector(0, 0, 50), turned)
+        part.addObject(self.obj)
+        self.document.recompute()
+        corners = [turned.multVec(FreeCAD.Vector(x, y, 0)) for x in (0, 40) for y in (0, 20)]
+        lo, hi = pieces.box_of(self.obj)
+        table = pieces.measure(self.obj)
+        for axis, low, high in (("X", min(c.x for c in corners), max(c.x for c in corners)),
+                                ("Y", min(c.y for c in corners), max(c.y for c in corners)), ("Z", 40, 50)):
+            place = "XYZ".index(axis)
+            for value, wanted in ((lo[place], low), (hi[place], high), (values_of(table, "from", axis)[0], low),
+                                  (values_of(table, "to", axis)[0], high)):
+                self.assertAlmostEqual(value, wanted, delta=1e-3, msg=axis)
+        made = model.add_section(self.obj, (0, 0, 49), (0, 0, 1))
+        self.assertAlmostEqual(made.Shape.BoundBox.ZMin, 49, places=6)
+        below, above = pieces.split(self.obj, (0, 0, 48), (0, 0, 1))
+        self.assertAlmostEqual(below.Mesh.BoundBox.ZMax, 48, places=4)
+        self.assertAlmostEqual(above.Mesh.BoundBox.XMin, lo[0], places=3)
 
     def test_where_it_lies_in_the_document(self):
         self.obj.Placement = FreeCAD.Placement(FreeCAD.Vector(0, 0, 100), FreeCAD.Rotation(0, 0, 0))

@@ -11,16 +11,29 @@ from ..core.errors import JobError
 translate = FreeCAD.Qt.translate
 
 
+def mesh_of(obj):
+    """Mesh of a simulation as it lies in the document, whatever part it is in."""
+    placement = obj.getGlobalPlacement()
+    if placement.isIdentity():
+        return obj.Mesh
+    mesh = obj.Mesh.copy()
+    mesh.Placement = FreeCAD.Placement()
+    mesh.transform(placement.toMatrix())
+    return mesh
+
+
 def body_of(obj):
-    """Body of the mesh of a simulation: cheap, its work is for any thread. JobError where nothing is left."""
-    if not obj.Mesh.CountFacets:
+    """Body of the mesh of a simulation as it lies in the document: cheap, its work is for any thread. JobError where
+    nothing is left, or it cannot be written among temporary files."""
+    mesh = mesh_of(obj)
+    if not mesh.CountFacets:
         raise JobError("nothing is left of the stock in '%s'" % obj.Label)
-    return Body(obj.Mesh.write)
+    return Body(mesh.write)
 
 
 def box_of(obj):
-    """(lo, hi) of the mesh of a simulation, mm."""
-    box = obj.Mesh.BoundBox
+    """(lo, hi) of the mesh of a simulation as it lies in the document, mm."""
+    box = mesh_of(obj).BoundBox
     return (box.XMin, box.YMin, box.ZMin), (box.XMax, box.YMax, box.ZMax)
 
 
