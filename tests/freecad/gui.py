@@ -3,16 +3,18 @@
 
 import os
 import sys
+import tempfile
 
 import FreeCAD
 import FreeCADGui as Gui
+import Mesh
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
 from PySide import QtGui  # noqa: E402
 
-from gui_support import OUT, QtWidgets, live, screenshot, start, wait_for  # noqa: E402
+from gui_support import OUT, QtWidgets, live, pump, screenshot, start, wait_for  # noqa: E402
 
 
 def menu_texts():
@@ -221,23 +223,157 @@ def check_split(obj):
     assert len(document.Objects) == count and obj.Visibility
 
 
-def check_gone(samples, simulation):
-    """A document that is closed while a panel looks at its stock: that is told, and the outline is gone."""
+def check_agreed(obj):
+    """The plane at which OK is pressed is the one that is added, wherever it is moved while its curves are looked for;
+    none is when they cannot be found."""
     from freecad.swarf_cam.gui import sectioning
 
-    name = FreeCAD.ActiveDocument.Name
-    document = FreeCAD.newDocument("gone")
-    job = samples.make_job(document)
-    document.recompute()
-    opened = sectioning.show_panel(simulation.simulate(simulation.make(job, 1.0)))
+    def fail(point, normal):
+        raise ValueError("no curves")
+
+    document = obj.Document
+    count = len(document.Objects)
+    opened = sectioning.show_panel(obj)
     wait_for(lambda: opened.found is not None, "the outline")
-    FreeCAD.closeDocument(document.Name)
+    opened.position.setValue(-1.94)
+    opened.accept()
+    opened.position.setValue(-2)
+    no_panel()
+    made, = document.Objects[count:]
+    assert abs(made.Shape.BoundBox.ZMin + 1.94) < 1e-3, made.Shape.BoundBox
+    document.undo()
+    opened = sectioning.show_panel(obj)
+    wait_for(lambda: opened.found is not None, "the outline")
+    opened.body.section = fail
     opened.position.setValue(-1)
     opened.accept()
-    wait_for(lambda: opened.message.text(), "an error")
-    assert "deleted" in opened.message.text() and not opened.closed, opened.message.text()
+    wait_for(lambda: "no curves" in opened.message.text(), "an error")
+    del opened.body.section
+    opened.position.setValue(-1.5)
+    wait_for(lambda: opened.closed or opened.found[0] == opened.plane, "the outline")
+    assert not opened.closed and len(document.Objects) == count, "added though nobody agreed to it"
     opened.reject()
     no_panel()
+
+
+def check_followed(obj):
+    """Panels follow the stock: to another mesh and back, and with the part that it is in."""
+    from freecad.swarf_cam.gui import measuring, sectioning, splitting
+
+    document = obj.Document
+    undo, count = document.UndoCount, len(document.Objects)
+
+    def change(mesh):
+        document.openTransaction("Change")
+        obj.Mesh = mesh
+        document.commitTransaction()
+
+    box = Mesh.createBox(10.0, 10.0, 4.0)
+    opened = sectioning.show_panel(obj)
+    assert "between -10" in opened.extent.text()
+    change(box)
+    wait_for(lambda: "between -2" in opened.extent.text(), "the other mesh")
+    document.undo()
+    wait_for(lambda: "between -10" in opened.extent.text(), "the mesh of before")
+    part = document.addObject("App::Part", "Raised")
+    part.Placement.Base.z = 50
+    part.addObject(obj)
+    document.recompute()
+    wait_for(lambda: "between 40" in opened.extent.text(), "the part's place")
+    opened.position.setValue(49)
+    wait_for(lambda: opened.curves.count == 2, "the outlines of both sides of the slot")
+    assert {place[2] for line in opened.found[1] for place in line} == {49}
+    screenshot("section_in_part.png")
+    part.removeObject(obj)
+    document.removeObject(part.Name)
+    document.recompute()
+    wait_for(lambda: "between -10" in opened.extent.text(), "the stock where it was")
+    opened.reject()
+    no_panel()
+    while document.UndoCount > undo:
+        document.undo()
+
+    opened = splitting.show_panel(obj)
+    opened.position.setValue(-1)
+    opened.accept()
+    change(box)
+    wait_for(lambda: not opened.working, "the split")
+    assert "changed meanwhile" in opened.message.text() and len(document.Objects) == count, opened.message.text()
+    opened.accept()
+    no_panel()
+    made = document.Objects[count:]
+    assert [round(part.Mesh.Volume) for part in made] == [100, 300], "of the mesh of before"
+    document.undo()
+    many = Mesh.Mesh()
+    for number in range(splitting.MOST_PIECES // 2 + 1):
+        other = Mesh.createBox(1.0, 1.0, 1.0)
+        other.translate(2.0 * number, 0, 0)
+        many.addMesh(other)
+    document.undo()
+    change(many)
+    opened = splitting.show_panel(obj)
+    opened.position.setValue(0)
+    opened.each.setChecked(True)
+    opened.accept()
+    wait_for(lambda: not opened.working, "refusal of too many pieces")
+    assert "these are 102 pieces, of which at most 100" in opened.message.text(), opened.message.text()
+    screenshot("split_many.png")
+    opened.reject()
+    no_panel()
+    document.undo()
+
+    opened = measuring.show_panel(obj)
+    for _ in range(2):  # while it measures, and after
+        change(box)
+        wait_for(lambda: not opened.working and opened.measured, "the measures")
+        pump(0.1)
+        wait_for(lambda: not opened.working, "the measures")
+        assert opened.table.item(0, 1).text() == "400 mm³", opened.table.item(0, 1).text()
+        document.undo()
+        pump(0.1)
+        wait_for(lambda: not opened.working, "the measures of before")
+        assert opened.table.item(0, 1).text() == "6800 mm³", opened.table.item(0, 1).text()
+    opened.reject()
+    no_panel()
+    assert (document.UndoCount, len(document.Objects)) == (undo, count)
+
+
+def check_no_place(obj):
+    """Without a folder of temporary files there is no panel, and one line that says why."""
+    from freecad.swarf_cam.gui import measuring, sectioning, splitting
+
+    usual, tempfile.tempdir = tempfile.tempdir, os.path.join(OUT, "no", "folder")
+    try:
+        for kind in (sectioning, splitting, measuring):
+            assert kind.show_panel(obj) is None and not Gui.Control.activeDialog()
+    finally:
+        tempfile.tempdir = usual
+
+
+def check_gone(samples, simulation):
+    """Panels of a simulation that is deleted, or whose document is closed, go with it."""
+    from freecad.swarf_cam.gui import measuring, sectioning, splitting
+
+    name = FreeCAD.ActiveDocument.Name
+    for kind in (sectioning, splitting, measuring):
+        document = FreeCAD.newDocument("gone")
+        job = samples.make_job(document)
+        document.recompute()
+        for end in (lambda: document.removeObject(obj.Name), lambda: FreeCAD.closeDocument(document.Name)):
+            obj = simulation.simulate(simulation.make(job, 1.0))
+            opened = kind.show_panel(obj)
+            wait_for(lambda: not opened.working and (kind is measuring or opened.found), "the panel's first look")
+            end()
+            opened.accept()  # at once
+            assert opened.closed, kind
+            no_panel()
+        document = FreeCAD.newDocument("gone")
+        job = samples.make_job(document)
+        document.recompute()
+        opened = kind.show_panel(simulation.simulate(simulation.make(job, 1.0)))
+        FreeCAD.closeDocument(document.Name)
+        wait_for(lambda: opened.closed, "the panel's end")
+        no_panel()
     FreeCAD.setActiveDocument(name)
 
 
@@ -429,6 +565,9 @@ def check():
     check_split(obj)
     check_measure(obj)
     check_closed(job, obj)
+    check_agreed(obj)
+    check_followed(obj)
+    check_no_place(obj)
     check_gone(samples, simulation)
     check_next(document, obj)
 

@@ -6,6 +6,7 @@ import FreeCAD
 
 from ..app import pieces
 from . import numbers, taskpanel
+from .bodypanel import BodyPanel
 from .qt import QtCore, QtWidgets, choice, flags
 from .worker import Worker
 
@@ -15,12 +16,12 @@ translate = FreeCAD.Qt.translate
 ROWS_SEEN = 15
 
 
-class MeasurePanel(taskpanel.TaskPanel):
+class MeasurePanel(BodyPanel):
     """Task panel for one simulation object. measured: core.measures.Table, None before it is known."""
 
     def __init__(self, obj):
-        super().__init__("SwarfMeasurePanel", translate("Swarf", "Measures of the stock"))
-        self.obj, self.measured, self.body = obj, None, pieces.body_of(obj)
+        super().__init__("SwarfMeasurePanel", translate("Swarf", "Measures of the stock"), obj)
+        self.measured = self._measuring = None
         layout = QtWidgets.QFormLayout(self.form)
         self.shell = choice()
         self.shell.setEnabled(False)
@@ -63,20 +64,35 @@ class MeasurePanel(taskpanel.TaskPanel):
     def begin(self):
         """Measure in a thread."""
         self.bar.show()
+        self._measuring = self.body
         self.worker = Worker(self.body.measures, self.show_progress, self.on_end)
         self.worker.start()
+
+    def renew(self):
+        """The measures are others; those of before are told no more."""
+        self.shell.setEnabled(False)
+        self.put.setEnabled(False)
+        self.table.setRowCount(0)
+        if self.worker is not None:
+            self.worker.cancel()
+        else:
+            self.begin()
 
     def on_end(self, measured, error):
         """The thread is through, with a table or an error."""
         self.worker = None
-        if self.closed:
+        self.follow()
+        if self.closed or self.worker is not None:
             return
-        if error is not None:
+        if self._measuring is not self.body:
+            self.begin()
+        elif error is not None:
             self.fail(error)
         else:
             self.measured = measured
             more = translate("Swarf", "{0} smaller shells are not listed").format(measured.more)
             self.end(more if measured.more else "")
+            self.shell.clear()
             self.shell.addItems([pieces.name_of(column) for column in measured.columns])  # which fills the table
             self.shell.setEnabled(True)
             self.put.setEnabled(True)
@@ -85,6 +101,8 @@ class MeasurePanel(taskpanel.TaskPanel):
         """The measures of the whole or of a shell; those by axes below a heading, in narrow rows."""
         self.table.setRowCount(0)
         self.table.clearSpans()
+        if place < 0:
+            return
         above = None
         for row in self.measured.rows:
             key, axis, unit, values = row
@@ -114,6 +132,9 @@ class MeasurePanel(taskpanel.TaskPanel):
 
     def add_sheet(self, *_):
         """The table into the document; the panel stays."""
+        self.follow()
+        if self.closed or self.working:
+            return
         try:
             made = pieces.add_sheet(self.obj, self.measured)
         except (ReferenceError, RuntimeError, ValueError) as error:

@@ -4,12 +4,11 @@ curves where it cuts, found in a thread and shown in the 3D view while the plane
 
 import FreeCAD
 
-from ..app import pieces
 from ..core.section import AXES, Section
 from . import numbers
+from .bodypanel import BodyPanel
 from .curves import Curves
 from .qt import QtWidgets, choice
-from .taskpanel import TaskPanel
 from .worker import Worker
 
 translate = FreeCAD.Qt.translate
@@ -20,23 +19,23 @@ DECIMALS = 3
 FARTHEST = 1e6
 
 
-class PlanePanel(TaskPanel):
+class PlanePanel(BodyPanel):
     """Task panel for one simulation object. found: (plane, polylines) as they were seen last, None before."""
 
     def __init__(self, name, title, obj):
-        super().__init__(name, title)
-        self.obj, self.found, self._looking = obj, None, None
-        self.body, self._box = pieces.body_of(obj), pieces.box_of(obj)
+        self.found = self.curves = None
+        self._looking = self._looked = None
+        super().__init__(name, title, obj)
         self.layout = QtWidgets.QFormLayout(self.form)
         self.axis = choice()
         self.axis.addItems(list(AXES))
-        self.axis.setToolTip(translate("Swarf", "Axis that the section is across"))
+        self.axis.setToolTip(translate("Swarf", "Axis that the plane is across"))
         self.layout.addRow(translate("Swarf", "Axis"), self.axis)
         self.position = QtWidgets.QDoubleSpinBox()
         self.position.setDecimals(DECIMALS)
         self.position.setRange(-FARTHEST, FARTHEST)
         self.position.setSuffix(" mm")
-        self.position.setToolTip(translate("Swarf", "Place of the section"))
+        self.position.setToolTip(translate("Swarf", "Place of the plane on the axis"))
         self.layout.addRow(translate("Swarf", "Position"), self.position)
         self.extent = QtWidgets.QLabel()
         self.extent.setWordWrap(True)
@@ -48,10 +47,19 @@ class PlanePanel(TaskPanel):
 
     def _show_axis(self, axis):
         """Where the stock lies on the axis, and its middle."""
-        self.position.setValue(Section(axis).position(self._box))
-        lo, hi = (numbers.text(corner[axis], DECIMALS) for corner in self._box)
-        self.extent.setText(translate("Swarf", "The stock lies between {0} and {1} mm").format(lo, hi))
+        self.position.setValue(Section(axis).position(self.box))
+        self._show_extent()
         self._move()
+
+    def _show_extent(self):
+        lo, hi = (numbers.text(corner[self.axis.currentIndex()], DECIMALS) for corner in self.box)
+        self.extent.setText(translate("Swarf", "The stock lies between {0} and {1} mm").format(lo, hi))
+
+    def renew(self):
+        """The curves are others; the plane stays."""
+        self.found = None
+        self._show_extent()
+        self.look()
 
     def _move(self, *_):
         """The plane is another one."""
@@ -66,37 +74,41 @@ class PlanePanel(TaskPanel):
         point[axis], normal[axis] = self.position.value(), 1.0
         return tuple(point), tuple(normal)
 
+    @property
+    def sought(self):
+        """The plane whose curves are to be found."""
+        return self.plane
+
     def look(self, *_):
-        """Find the curves of the plane as it is now, unless that is under way: then it is looked at again."""
+        """Find the curves of the plane that is sought now, unless that is under way: then it is looked at again."""
         if self._looking is None and not self.closed:
-            plane = self.plane
-            self._looking = Worker(lambda progress: (plane, self.body.section(*plane)), lambda fraction: None,
-                                   self._on_look)
+            body, plane = self._looked = self.body, self.sought
+            self._looking = Worker(lambda progress: body.section(*plane), lambda fraction: None, self._on_look)
             self._looking.start()
 
-    def _on_look(self, found, error):
+    def _on_look(self, curves, error):
         self._looking = None
-        if self.closed:
+        self.follow()
+        if self.closed or self._looking is not None:
+            return
+        plane = self.sought
+        if self._looked != (self.body, plane):
+            self.look()
             return
         if error is not None:
             self.fail(error)
-            return
-        if found[0] != self.plane:
+        else:
+            self.found = plane, curves
+            self.curves.show(curves)
+            self.on_found(curves)
+        if not self.closed and self.sought != plane:
             self.look()
-            return
-        self.found = found
-        self.curves.show(found[1])
-        self.on_found(found[1])
 
     def on_found(self, curves):
         """The curves of the plane are known."""
 
-    def gone(self, *_):
-        """The widgets are no more, whoever closed the dialog, and the curves neither."""
-        super().gone()
-        self.curves.remove()
-
-    def close(self):
-        """Close the panel once."""
-        self.curves.remove()
-        super().close()
+    def release(self):
+        """Nor are there curves."""
+        super().release()
+        if self.curves is not None:
+            self.curves.remove()

@@ -82,6 +82,10 @@ class TaskPanel:
         self.closed = True
         if self.worker is not None:
             self.worker.cancel()
+        self.release()
+
+    def release(self):
+        """Let go of what is not in the panel, when it closes; may be called twice."""
 
     def fail(self, error):
         """In the panel, where the user looks, and in the report view, where it stays."""
@@ -93,6 +97,7 @@ class TaskPanel:
         """Close the panel once."""
         if not self.closed:
             self.closed = True
+            self.release()
             Gui.Control.closeDialog()
 
 

@@ -187,6 +187,10 @@
             <translation>Achse</translation>
         </message>
         <message>
+            <source>Axis that the plane is across</source>
+            <translation>Achse, quer zu der die Ebene liegt</translation>
+        </message>
+        <message>
             <source>Axis that the section is across</source>
             <translation>Achse, quer zu der geschnitten wird</translation>
         </message>
@@ -587,6 +591,10 @@
             <translation>Stück {0}</translation>
         </message>
         <message>
+            <source>Place of the plane on the axis</source>
+            <translation>Lage der Ebene auf der Achse</translation>
+        </message>
+        <message>
             <source>Place of the section</source>
             <translation>Lage des Schnitts</translation>
         </message>
@@ -841,6 +849,12 @@
 </translation>
         </message>
         <message>
+            <source>Swarf: the simulation was deleted; its panel is closed
+</source>
+            <translation>Swarf: Die Simulation wurde gelöscht; ihre Aufgabe ist geschlossen
+</translation>
+        </message>
+        <message>
             <source>Swarf: written: {0}, {1}
 </source>
             <translation>Swarf: geschrieben: {0}, {1}
@@ -907,6 +921,10 @@
         <message>
             <source>The stock as it was: nothing was cut here yet.</source>
             <translation>Das Rohteil, wie es war: hier wurde noch nichts geschnitten.</translation>
+        </message>
+        <message>
+            <source>The stock changed meanwhile; nothing was split.</source>
+            <translation>Das Rohteil hat sich inzwischen geändert; es wurde nichts geteilt.</translation>
         </message>
         <message>
             <source>The stock lies between {0} and {1} mm</source>

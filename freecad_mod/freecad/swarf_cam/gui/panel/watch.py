@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Notices when the job that is watched changes, or goes."""
 
-import FreeCAD
-
 from ...app import fixtures
 from ...app.accepted import ACCEPTED
 from ...app.setups import signature_steps
+from ..observer import Observer
 from ..qt import QtCore
 from ..slices import Slices
 
@@ -33,14 +32,11 @@ class JobWatch(QtCore.QObject):
         self._timer.setSingleShot(True)
         self._timer.setInterval(QUIET_MS)
         self._timer.timeout.connect(self._compare)
-        self._observer = _Observer(self)
-        FreeCAD.addDocumentObserver(self._observer)
+        self._observer = Observer(self)
 
     def stop(self):
         """Watch no more."""
-        if self._observer is not None:
-            FreeCAD.removeDocumentObserver(self._observer)
-            self._observer = None
+        self._observer.stop()
         self._stop_comparing()
 
     @property
@@ -112,31 +108,3 @@ class JobWatch(QtCore.QObject):
     def _lose_job(self):
         self._job = None
         self._stop_comparing()
-
-
-class _Observer:
-    """FreeCAD calls these; nothing may come out of them."""
-
-    def __init__(self, watch):
-        self._watch = watch
-
-    def _call(self, function, *arguments):
-        try:
-            function(*arguments)
-        except (ReferenceError, RuntimeError, AttributeError):
-            pass
-
-    def slotChangedObject(self, obj, name):
-        self._call(self._watch.on_changed, obj, name)
-
-    def slotUndoDocument(self, document):
-        self._call(self._watch.on_undone, document)
-
-    def slotRedoDocument(self, document):
-        self._call(self._watch.on_undone, document)
-
-    def slotDeletedObject(self, obj):
-        self._call(self._watch.on_deleted, obj)
-
-    def slotDeletedDocument(self, document):
-        self._call(self._watch.on_closed, document)
