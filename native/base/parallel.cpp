@@ -23,6 +23,18 @@ namespace {
 std::atomic<int> wanted_threads{0};
 thread_local int current_slot = 0;
 
+/* A piece of work may itself share work out, and then goes on in the slot it had. */
+struct slot_kept {
+    int own = current_slot;
+    slot_kept() = default;
+    slot_kept(const slot_kept &) = delete;
+    slot_kept &operator=(const slot_kept &) = delete;
+    ~slot_kept()
+    {
+        current_slot = own;
+    }
+};
+
 /* Making an arena costs more than cutting one move, so the last one is kept for the next call of the same width;
  * calls that overlap get one of their own. */
 std::mutex kept_mutex;
@@ -125,7 +137,6 @@ void run_on(int threads, run &state)
             },
             tbb::simple_partitioner());
     });
-    current_slot = 0;
     keep_arena(std::move(arena));
 }
 #endif
@@ -192,6 +203,7 @@ extern "C" swarf_status swarf_parallel_for(size_t count, swarf_work_fn work, voi
     return swarf_guard("parallel work", [&]() -> swarf_status {
         run state{work, context, progress && progress->fn ? progress : nullptr, from, to, count};
         const int threads = swarf_threads();
+        const slot_kept kept;
         if (threads == 1 || count == 1) {
             current_slot = 0;
             for (size_t index = 0; index < count && state.failed.load() == SWARF_OK; index++) state.one(index);

@@ -398,7 +398,7 @@ static swarf_program *make_program(const part *t)
 }
 
 /* Part of the points, half of them on edges, that may be farther than the error, and how far the farthest may be, in
- * voxels: once and a half what was seen with four seeds. Cutters without sharp undercuts keep the error. The others
+ * voxels: once and a half what was seen with three seeds. Cutters without sharp undercuts keep the error. The others
  * leave wedges of air or chip narrower than a voxel, in which no voxel's centre lies, and which end more than a cell
  * away from the next; without `fine` 0.234 of the points were beyond for the thread mill, two edges of which pass one
  * cell all along its roots. The drill's arc starts at the tip of a groove that is a quarter of a voxel deep, where

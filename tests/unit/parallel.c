@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* swarf_parallel_for: every index once, the first failure wins with its text, cancelling, progress. */
+/* swarf_parallel_for: every index once, the first failure wins with its text, cancelling, progress, slots. */
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
@@ -170,6 +170,39 @@ static void check_sharing(void)
     CHECK(atomic_load(&here) == 400 && atomic_load(&beside) == 400);
 }
 
+typedef struct slots {
+    atomic_int busy[8];
+    atomic_size_t wrong;
+} slots;
+
+static swarf_status nothing(void *context, size_t index)
+{
+    (void)context;
+    (void)index;
+    return SWARF_OK;
+}
+
+/* A piece has its slot for itself, a loop inside it or not. */
+static swarf_status keep_slot(void *context, size_t index)
+{
+    slots *s = context;
+    const int own = swarf_parallel_slot();
+    atomic_fetch_add(&s->wrong, (size_t)(atomic_fetch_add(&s->busy[own], 1) != 0));
+    const swarf_status status = index % 3 ? SWARF_OK : swarf_parallel_for(2, nothing, NULL, NULL, 0, 1);
+    atomic_fetch_add(&s->wrong, (size_t)(swarf_parallel_slot() != own));
+    atomic_fetch_sub(&s->busy[own], 1);
+    return status;
+}
+
+static void check_slots(int threads)
+{
+    CHECK_OK(swarf_threads_set(threads));
+    slots s = {.wrong = 0};
+    CHECK_OK(swarf_parallel_for(COUNT, keep_slot, &s, NULL, 0, 1));
+    CHECK(atomic_load(&s.wrong) == 0);
+    CHECK(swarf_parallel_slot() == 0);
+}
+
 static int note(void *user, double fraction)
 {
     *(double *)user = fraction;
@@ -197,6 +230,7 @@ int main(void)
         check_every_index_once(threads[i]);
         check_failure(threads[i]);
         check_progress(threads[i]);
+        check_slots(threads[i]);
     }
     check_sharing();
     check_share();
