@@ -35,8 +35,8 @@ def check_meant(arguments: argparse.Namespace, made: bool, of_error: bool) -> No
         ("--error", arguments.error is not None, made or of_error), ("--budget", arguments.budget, made),
         ("--fine", arguments.fine, made), ("--keep-volume", arguments.keep_volume, made)) if value and not meant]
     if given:
-        raise ValueError(f"{' and '.join(given)}: nothing that is made heeds it; give --output with {', '.join(MESH_SUFFIXES)} "
-                         "or --report")
+        raise ValueError(f"{' and '.join(given)}: nothing that is made heeds it; give --output with "
+                         f"{', '.join(MESH_SUFFIXES)} or --report")
 
 
 def notes(made: Contour, files: Sequence[str], budget: int, error: float, kept_mm3: Optional[float]) -> list[str]:
