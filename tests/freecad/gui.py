@@ -14,7 +14,7 @@ sys.path[:0] = [HERE, os.path.join(HERE, "inside")]
 
 from PySide import QtGui  # noqa: E402
 
-from gui_support import OUT, QtWidgets, live, pump, screenshot, start, wait_for  # noqa: E402
+from gui_support import OUT, QtWidgets, live, screenshot, start, wait_for  # noqa: E402
 
 
 def menu_texts():
@@ -283,6 +283,7 @@ def check_followed(obj):
     opened.position.setValue(49)
     wait_for(lambda: opened.curves.count == 2, "the outlines of both sides of the slot")
     assert {place[2] for line in opened.found[1] for place in line} == {49}
+    Gui.SendMsgToActiveView("ViewFit")
     screenshot("section_in_part.png")
     part.removeObject(obj)
     document.removeObject(part.Name)
@@ -325,12 +326,11 @@ def check_followed(obj):
     opened = measuring.show_panel(obj)
     for _ in range(2):  # while it measures, and after
         change(box)
-        wait_for(lambda: not opened.working and opened.measured, "the measures")
-        pump(0.1)
+        opened.follow()
         wait_for(lambda: not opened.working, "the measures")
         assert opened.table.item(0, 1).text() == "400 mm³", opened.table.item(0, 1).text()
         document.undo()
-        pump(0.1)
+        opened.follow()
         wait_for(lambda: not opened.working, "the measures of before")
         assert opened.table.item(0, 1).text() == "6800 mm³", opened.table.item(0, 1).text()
     opened.reject()

@@ -48,21 +48,33 @@ class Body:
         """Files of its parts on both sides of a plane, each closed: first what lies against the normal; or of each
         piece of them, `most` of them at most. They live as long as the body. JobError where the plane misses it or
         there are more, swarf.Error where it is open, swarf.Cancelled."""
+        native.check(progress, 0)
         sides = self.mesh.split(tuple(point), tuple(normal))
+        native.check(progress, 0.1)
         if not all(side.triangle_count for side in sides):
             raise JobError("the plane does not cut what is left of the stock")
-        found = native.split_pieces(sides, native.share(progress, 0, 0.5)) if each else sides
-        if most is not None and len(found) > most:
-            raise JobError("these are %d pieces, of which at most %d become objects: split by the plane alone, or "
-                           "export the stock and split its file by 'swarf mesh --split'" % (len(found), most))
+        found = self._pieces(sides, native.share(progress, 0.1, 0.5), most) if each else sides
         files = []
         for number, part in enumerate(found):
-            if progress is not None and progress(0.5 + 0.5 * number / len(found)):
-                raise native.load().Cancelled("cancelled")
+            native.check(progress, 0.5 + 0.5 * number / len(found))
             self._count += 1
             files.append(self._file("part-%d.ply" % self._count))
             part.write(files[-1])
         return files
+
+    @staticmethod
+    def _pieces(sides, progress, most):
+        """Meshes of the pieces of some, counted before they are made."""
+        count = 2 * len(sides)
+        groups = [native.pieces_of(side, native.share(progress, number / count, (number + 1) / count))
+                  for number, side in enumerate(sides)]
+        found = sum(map(len, groups))
+        if most is not None and found > most:
+            raise JobError("these are %d pieces, of which at most %d become objects: split by the plane alone, or "
+                           "export the stock and split its file by 'swarf mesh --split'" % (found, most))
+        return [piece for number, (side, group) in enumerate(zip(sides, groups), len(sides))
+                for piece in side.split_shells(
+                    group, progress=native.share(progress, number / count, (number + 1) / count))]
 
     def measures(self, progress=None):
         """core.measures.Table of the whole and its shells. swarf.Cancelled."""

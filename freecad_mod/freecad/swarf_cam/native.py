@@ -141,12 +141,14 @@ def share(progress, begin, end):
     return _package("progress").share(progress, begin, end)
 
 
-def split_pieces(meshes, progress=None):
-    """swarf.Meshes of each piece of some, its cavities with it. swarf.Cancelled."""
-    made = []
-    for number, mesh in enumerate(meshes):
-        made += _package("parts").split_pieces(mesh, share(progress, number / len(meshes), (number + 1) / len(meshes)))
-    return made
+def check(progress, fraction):
+    """Tell how much is done; swarf.Cancelled."""
+    _package("progress").check(progress, fraction)
+
+
+def pieces_of(mesh, progress=None):
+    """Places in mesh.shells() of the shells of each piece, its cavities behind it. swarf.Cancelled."""
+    return _package("parts").pieces_of(mesh, progress)
 
 
 def thinnest(mesh, progress=None):

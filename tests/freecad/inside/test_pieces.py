@@ -72,6 +72,8 @@ class TestPieces(unittest.TestCase):
         with self.assertRaises(native.load().Cancelled):
             pieces.split(self.obj, (0, 0, -1), (0, 0, 1), True, lambda done: told.append(done) or len(told) > 1)
         self.assertEqual((len(told), self.document.UndoCount, self.obj.Visibility), (2, 0, True))
+        with self.assertRaises(native.load().Cancelled):  # before it is known that the plane misses
+            pieces.split(self.obj, (0, 0, 500), (0, 0, 1), False, lambda done: True)
 
     def test_who_splits_can_cancel_while_pieces_are_made(self):
         body = Body(row_of_boxes(30).write)
