@@ -47,34 +47,21 @@ static void check_box(void)
     swarf_mesh_release(mesh);
 }
 
-static int stop_at_half(void *user, double fraction)
-{
-    (void)user;
-    return fraction >= 0.5;
-}
-
-static int same_mesh(const swarf_mesh *one, const swarf_mesh *other)
-{
-    const swarf_triangles a = swarf_mesh_triangles(one), b = swarf_mesh_triangles(other);
-    return a.vertex_count == b.vertex_count && a.triangle_count == b.triangle_count &&
-           !memcmp(a.xyz, b.xyz, 3 * a.vertex_count * sizeof *a.xyz) &&
-           !memcmp(a.index, b.index, 3 * a.triangle_count * sizeof *a.index);
-}
-
 /* Groups are what their shells are by themselves; of three shells the second is in none, and the middle group is
  * empty. Cancelled, nothing comes out. */
 static void check_groups(const swarf_mesh *mesh, const swarf_measures *measures)
 {
     static const uint32_t group_of[] = {2, UINT32_MAX, 0}, own[] = {2, 0};
     swarf_mesh *group[3] = {NULL}, *part = NULL;
-    const swarf_progress stopping = {stop_at_half, NULL};
+    test_stopper stopper = {.after = 1};
+    const swarf_progress stopping = {test_stop, &stopper};
     CHECK_FAILS(swarf_mesh_create_groups(mesh, measures, group_of, 3, &stopping, group), SWARF_ERROR_CANCELLED, "");
     CHECK(!group[0] && !group[1] && !group[2]);
     CHECK_OK(swarf_mesh_create_groups(mesh, measures, group_of, 0, NULL, NULL));
     if (!CHECK_OK(swarf_mesh_create_groups(mesh, measures, group_of, 3, NULL, group))) return;
     for (size_t g = 0; g < 3; g++) {
         if (CHECK_OK(swarf_mesh_create_shells(mesh, measures, own + g / 2, g != 1, &part))) {
-            CHECK(same_mesh(group[g], part));
+            CHECK(test_same_mesh(group[g], part));
             swarf_mesh_release(part);
         }
         swarf_mesh_release(group[g]);

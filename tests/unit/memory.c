@@ -163,7 +163,8 @@ struct things {
     swarf_history *history;
     swarf_check *check;
     swarf_simulation *simulation;
-    swarf_mesh *mesh, *welded;
+    swarf_mesh *mesh, *welded, *parts[2];
+    swarf_measures *measures;
     swarf_contour_report report;
     double volume;
     uint64_t hash; /* of the history's stock where its walk ends */
@@ -258,6 +259,23 @@ static swarf_status weld_mesh(struct things *t)
 {
     const swarf_triangles triangles = swarf_mesh_triangles(t->mesh);
     return swarf_mesh_create(&triangles, &t->welded);
+}
+
+static swarf_status measure_mesh(struct things *t)
+{
+    return swarf_measures_create(t->mesh, &t->measures);
+}
+
+/* Its shell, which it has one of, and none. */
+static swarf_status part_mesh(struct things *t)
+{
+    static const uint32_t group_of = 1;
+    size_t shells;
+    swarf_measures_shells(t->measures, &shells);
+    if (!CHECK(shells == 1)) return SWARF_ERROR_ARGUMENT;
+    const swarf_status status = swarf_mesh_create_groups(t->mesh, t->measures, &group_of, 2, NULL, t->parts);
+    CHECK((status == SWARF_OK) == (t->parts[0] != NULL) && (status == SWARF_OK) == (t->parts[1] != NULL));
+    return status;
 }
 
 /* A block with a slot along its side, a groove that leaves a thin wall beside it, and a ball's trace across both: with
@@ -406,6 +424,8 @@ static const struct step all[] = {
     {"walk through it", walk},
     {"make the mesh", make_mesh},
     {"weld the mesh", weld_mesh},
+    {"measure the mesh", measure_mesh},
+    {"part the mesh", part_mesh},
 };
 
 static const struct step contours[] = {
@@ -421,6 +441,8 @@ static const struct step bands[] = {
 
 static void release(struct things *t)
 {
+    for (size_t i = 0; i < 2; i++) swarf_mesh_release(t->parts[i]);
+    swarf_measures_destroy(t->measures);
     swarf_mesh_release(t->welded);
     swarf_mesh_release(t->mesh);
     swarf_simulation_destroy(t->simulation);
