@@ -5,13 +5,14 @@ from __future__ import annotations
 import argparse
 import math
 import os
-from typing import Any, Iterator, Optional, Union
+from typing import Any, Iterator, Optional, Union, get_args
 
 from . import specs
 from ._native import Program
+from .aliases import Dialect
 from .records import ARC, AXES, MOVE, SECTION, section_and_kind
 
-DIALECTS = ("linuxcnc", "grbl", "mach3", "fanuc")
+DIALECTS: tuple[Dialect, ...] = get_args(Dialect)
 
 MOVE_KINDS = ("rapid", "feed", "dwell", "tool", "probe", "position")
 PLANES = ("xy", "zx", "yz")
