@@ -100,8 +100,9 @@ int test_stop(void *stopper, double fraction)
 int test_same_mesh(const swarf_mesh *a, const swarf_mesh *b)
 {
     const swarf_triangles s = swarf_mesh_triangles(a), t = swarf_mesh_triangles(b);
-    return s.vertex_count == t.vertex_count && s.triangle_count == t.triangle_count &&
-           memcmp(s.xyz, t.xyz, s.vertex_count * 3 * sizeof *s.xyz) == 0 &&
+    if (s.vertex_count != t.vertex_count || s.triangle_count != t.triangle_count) return 0;
+    if (s.vertex_count == 0) return 1; /* there are no arrays either */
+    return memcmp(s.xyz, t.xyz, s.vertex_count * 3 * sizeof *s.xyz) == 0 &&
            memcmp(s.index, t.index, s.triangle_count * 3 * sizeof *s.index) == 0;
 }
 
